@@ -10,14 +10,16 @@ the user gave, and never by way of a file.
 
 from __future__ import annotations
 
+import hashlib
 import sys
 import time
 from collections.abc import Generator, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from .. import impact
 from ..edges.console import UserError
-from ..impact.cache import code_digest
 from ..impact.model.surface.clones import Clone
 from ..impact.model.surface.releases import git_directory
 from ..impact.tree import TreeError
@@ -28,6 +30,19 @@ if TYPE_CHECKING:
 # Seconds to wait for the scheduler and for its first worker, and for another when the last one is gone.
 _REACH = 5
 _LOST = 30
+
+
+@cache
+def code_digest() -> str:
+    """The same on every machine that has the same checker: names and contents of its files."""
+    root = Path(impact.__path__[0])
+    digest = hashlib.sha1()
+    for path in sorted(root.rglob("*")):
+        if path.suffix != ".pyc" and path.is_file():
+            data = path.read_bytes()
+            digest.update(f"{path.relative_to(root).as_posix()} {len(data)}\n".encode("utf-8", "surrogateescape"))
+            digest.update(data)
+    return digest.hexdigest()
 
 
 class ClusterError(UserError):

@@ -29,12 +29,11 @@ from typing import NamedTuple
 from ..edges.files import write_file
 from ..impact.facts import surface_cpp
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, offered
-from ..impact.targets.changes import all_rows
+from ..impact.targets.changes import all_rows, all_uses
 from ..impact.targets.machine.unpacked_deb import members
 from ..impact.targets.platform import CODENAMES
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import shipped
-from ..impact.targets.uses import all_uses
 from ..impact.targets.version import at_least, parts
 from . import library_tags
 from .includes import platform_versions
@@ -384,7 +383,7 @@ def _pattern(name: str, count: int) -> dict[str, str]:
 def told_elsewhere() -> Callable[[str, str], bool]:
     """What the reviewed tables treat, under any part of its name, and what some ROS package has or had."""
     reviewed = {name for row in all_rows() if not row.last_in for name in (row.old, row.new) if name}
-    used = {row.pattern.word for row in all_uses() if not row.last_in}
+    used = {row.pattern.word for row in all_uses().values() if row.pattern is not None and not row.last_in}
     ros = _of_ros_packages()
 
     def told(kind: str, name: str) -> bool:

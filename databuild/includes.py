@@ -513,7 +513,7 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
             for name, where in history.types().items():
                 if name in names:
                     names[name].update(dict.fromkeys(where))
-            for name, where in history.included.announcing().items():
+            for name, where in _announcing(history.included).items():
                 if name in names:
                     announced.setdefault(name, {}).update(dict.fromkeys(where))
     versions = {
@@ -617,6 +617,15 @@ def _write(table: includes.Table, output: Path) -> None:
     plain = msgspec.to_builtins(table, order="deterministic")
     raw = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
     write_file(output / "includes.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
+
+
+def _announcing(included: Included) -> dict[str, tuple[str, ...]]:
+    """Types with the headers that announce them in any version."""
+    found: dict[str, dict[str, None]] = {}
+    for header, rows in included.headers.items():
+        for number in {number for row in rows for number in row.announced}:
+            found.setdefault(included.types[number], {})[header] = None
+    return {name: tuple(sorted(headers)) for name, headers in found.items()}
 
 
 if __name__ == "__main__":

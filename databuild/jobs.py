@@ -11,11 +11,10 @@ from ..impact.facts.store import Store
 from ..impact.model.surface.clones import Clone
 from ..impact.model.surface.package import surfaces_of
 from ..impact.targets.surface.compare import State
-from ..impact.targets.surface.includes import Including
-from ..impact.targets.surface.store import Packed, Packer, Stored
 from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
 from .surface_changes import Lines
+from .surface_file import Including, Packed, Packer, Stored
 
 
 class Wanted(NamedTuple):

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS, Entity
-from ..impact.targets.surface.changes import Event, Form, Line, Overload, Told, brief, pack
+from ..impact.targets.surface.changes import Event, Form, Line, Overload, Told
 from ..impact.targets.surface.compare import Change, State, compare
 from ..impact.targets.surface.python import UNKNOWN
+from .surface_file import brief, pack
 
 # What other tables tell (messages), and what a package has for itself.
 _UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))

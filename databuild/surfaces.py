@@ -20,9 +20,10 @@ from ..impact.model.surface.clones import Clone, Clones, Release, Version
 from ..impact.targets.distro.distro import DistroTarget, TargetError
 from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import Snapshot, default
-from ..impact.targets.surface.store import History, Packed, write
+from ..impact.targets.surface.store import History
 from ..impact.targets.version import parts
 from .jobs import Job, Result, Wanted, run
+from .surface_file import Packed, write
 
 Versions = Literal["newest", "all"]
 """Which versions are read: those that distros have, or all that they ever had."""

@@ -166,11 +166,11 @@ def _splits(
     sources: Sources,
 ) -> list[Finding]:
     """Findings of unguarded-split, which rest on findings of other rules; new where all of those are."""
-    from ..rules.api.unguarded_split import split
+    from ..rules.api.unguarded_split import list_splits
 
-    hits = split((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
+    found_splits = list_splits((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
     found = after.merge(
-        (("unguarded-split", target, hit) for target, hit in hits),
+        (("unguarded-split", target, one) for target, one in found_splits),
         targets=[view.target.name for view in opened.views],
         rules=rules,
         line_text=sources.line,

@@ -18,7 +18,6 @@ from ..rules.text import Value, attributed
 if TYPE_CHECKING:
     from ..config import PathSetting
 
-BASELINE_NAME = ".rosimpact-baseline.json"
 _MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
 

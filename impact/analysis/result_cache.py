@@ -24,12 +24,12 @@ from ..rules.rule import Cure, Diagnostic, Edit, Hit
 from ..rules.severity import Doubt
 from ..rules.text import Value
 from ..source_keys import code_stamp
+from ..targets.changes import looked_for
 from ..targets.evidence import Evidence
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
 from ..targets.target import Change, Target
-from ..targets.uses import looked_for
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic | Hit]
@@ -180,7 +180,7 @@ def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
         diagnostic.evidence,
         kind,
         dict(data),
-        tuple(doubt.name for doubt in doubts),
+        tuple(doubt.name for doubt in doubts if isinstance(doubt, Doubt)),
     )
 
 

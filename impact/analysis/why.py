@@ -109,7 +109,9 @@ def _answers(view: View, name: str) -> list[Answer]:
     )
     lost = view.lost_header(name)
     if lost is not None:
-        changes = (f"gone: {lost.message}" + (f"; {lost.help}" if lost.help else ""), *changes)
+        where = f" in {lost.package} {lost.version}".rstrip() if lost.package else ""
+        instead = f"; include `{lost.replacement}`" if lost.replacement else ""
+        changes = (f"gone: `{name}` is not available{where}{instead}", *changes)
     if not found:
         found = [("name", ())]
     return [Answer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]

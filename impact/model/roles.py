@@ -19,9 +19,12 @@ KINDS = {
     "build": frozenset({"build", "buildtool", "build_export", "buildtool_export"}),
     "run": frozenset({"exec", "build_export", "buildtool_export"}),
     "test": frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test"}),
+    "tests alone": frozenset({"test"}),
 }
-"""Kinds of dependencies that install what a role needs. Tests are built and run where everything is."""
+"""Kinds of dependencies that install what a role needs. Tests are built and run where everything is; what is for them
+alone is asked for by itself."""
 
+_BUILD_DEPENDS = frozenset({"build", "buildtool", "test"})
 _TOOLS = frozenset({"buildtool_export"})
 _PROMISES = _TOOLS | {"build_export"}
 _HANDED_ON = ("ament_export_dependencies", "catkin_depends", "system_depends")
@@ -36,14 +39,26 @@ class Roles:
         self._promises: dict[str, tuple[str, ...]] = {}
         self._at_hand: dict[tuple[str, str], frozenset[str]] = {}
         self._handed_on: dict[tuple[str, str, bool], frozenset[str]] = {}
+        self._on_farm: dict[str, frozenset[str]] = {}
 
     def at_hand(self, package: Package, role: str) -> frozenset[str]:
-        """Everything that is installed along with what a package declares for a role (`build`, `run`, `test`)."""
+        """Everything that is installed along with what a package declares for a role: a key of KINDS."""
         known = self._at_hand.get((package.name, role))
         if known is None:
             declared = self._view.declared(package)
             start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
             known = self._at_hand[package.name, role] = self._view.spread(start) | {package.name}
+        return known
+
+    def on_build_farm(self, package: Package) -> frozenset[str]:
+        """Everything that may be on the machine which builds the package's release: what is declared to build and to
+        test, and not what is declared to run only. Source: bloom, whose Build-Depends are these."""
+        known = self._on_farm.get(package.name)
+        if known is None:
+            view = self._view
+            start = [name for name, kinds in view.declared(package).items() if kinds & _BUILD_DEPENDS]
+            known = view.widest_spread(start).union(view.preinstalled, (package.name,))
+            self._on_farm[package.name] = known
         return known
 
     def handed_on(self, package: Package, role: str, promised: bool) -> frozenset[str]:

@@ -9,14 +9,12 @@ from functools import cache
 import msgspec
 
 from ..facts.usage import Pattern
-from ..targets.behaviour import all_behaviour
-from ..targets.changes import all_rows, transitive_includes
+from ..targets.changes import all_rows, all_uses, looked_for, stamp_of_uses, transitive_includes
 from ..targets.providers.includes import offered
 from ..targets.providers.library import OPENCV_FUNCTIONS
 from ..targets.providers.standard import offering
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
-from ..targets.uses import all_uses, looked_for, stamp
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -47,15 +45,15 @@ def watched() -> Watched:
     for include in transitive_includes():
         headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
     modules: dict[str, list[tuple[str, Pattern]]] = {}
-    for row in all_uses():
-        if row.pattern.language == "python":
-            modules.setdefault(row.package, []).append((row.label, _bare(row.pattern)))
+    for label, row in all_uses().items():
+        if row.pattern is not None and row.pattern.language == "python":
+            modules.setdefault(row.package, []).append((label, _bare(row.pattern)))
     parameters = []
-    for row in all_behaviour().values():
-        if row.pattern.language == "yaml":
-            parameters.append((row.label, _bare(row.pattern)))
-        for module in row.imports:
-            modules.setdefault(module, []).append((row.label, _bare(row.pattern)))
+    for label, row in all_uses("behaviour").items():
+        if row.pattern is not None and row.pattern.language == "yaml":
+            parameters.append((label, _bare(row.pattern)))
+        for module in row.pattern.imports if row.pattern is not None else ():
+            modules.setdefault(module, []).append((label, _bare(row.pattern)))
     fields = default_fields()
     version = hashlib.sha1(
         repr(
@@ -66,7 +64,7 @@ def watched() -> Watched:
                 sorted(headers.items()),
                 modules,
                 parameters,
-                stamp(),
+                stamp_of_uses(),
                 fields.version,
                 shipped().stamp,
             )

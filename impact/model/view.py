@@ -18,24 +18,23 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
-from ..targets.changes import DISTROS
+from ..targets.changes import DISTROS, Row
 from ..targets.evidence import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import Machine, machine, machine_of
 from ..targets.providers.library import default_standard, include_roots, standard_year
 from ..targets.providers.stdlib import ever_stdlib, stdlib
-from ..targets.surface.fields import History, before, default_fields, there
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import Change, Provider, Target
 from ..targets.version import at_least
 from .cmake.build import At, Found, for_tests
-from .misspelling import Names, nearest
-from .package import MemberUse, role_of_folder
+from .misspelling import Names
+from .package import role_of_folder
 from .python.api import python_packages
 from .roles import Roles
-from .workspace import Package, Workspace, snake
+from .workspace import Package, Workspace
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
 # Depends).
@@ -74,19 +73,6 @@ def weight(need: Need) -> tuple:
     return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
 
-class Misnamed(NamedTuple):
-    """Why an include path, or a name, cannot be right, and what to write. ahead: it still is, until then. closed: it is
-    said because nobody is known to have it, so that whatever brings unknown contents may. never: no version of anything
-    ever had it."""
-
-    message: str
-    help: str
-    evidence: Evidence | None = None
-    ahead: Horizon | None = None
-    closed: bool = False
-    never: bool = False
-
-
 # How packages of interfaces are called, and what makes interfaces and runs with them.
 _INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
 _WITH_INTERFACES = (
@@ -99,13 +85,6 @@ _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boo
 _GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 # System packages so broad that they bring half of ROS along.
 _BROAD = frozenset({"mrpt"})
-# Generated headers that users include, by ROS generation; dynamic_reconfigure makes `XConfig.h`.
-_GENERATED_HEADER = {
-    1: re.compile(r"[A-Z][A-Za-z0-9]*(?<!Config)\.h\Z"),
-    2: re.compile(r"(?:msg|srv|action)/[a-z][a-z0-9_]*(?<!__struct)(?<!__traits)(?<!__builder)\.hpp\Z"),
-}
-_CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-
 _UNCONFIGURED = Config()
 # What may be known by its identity as long as it is kept, since it does not change.
 _LASTING = (frozenset, MappingProxyType)
@@ -153,7 +132,7 @@ class View:
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
         self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
-        self._lost: dict[str, Misnamed | None] = {}
+        self._lost: dict[str, Availability | None] = {}
         self._offers_ahead: dict[str, tuple[Offers, PythonOffers]] = {}
         self._environments: dict[str, Environment] = {}
         # What rules worked out for each package and several of them ask for.
@@ -457,48 +436,42 @@ class View:
             return None
         return self.availability(Symbol("header", path, tuple(owners)))
 
-    def lost_header(self, path: str) -> Misnamed | None:
-        """What is wrong when every released package that has, or had, a header lacks it in its version here."""
+    def lost_header(self, path: str) -> Availability | None:
+        """How the target stands to a header that every released package which has, or had, it lacks in its version
+        here, where header_availability() does not tell. Its form is `broken` where the workspace names it and nobody
+        makes it, `platform` where nobody is known to have it, so that whatever brings unknown contents may, `nested`
+        where it is installed under another path."""
         if path not in self._lost:
             self._lost[path] = self._lost_header(path)
         return self._lost[path]
 
-    def _lost_header(self, path: str) -> Misnamed | None:
-        target = self.target
+    def _lost_header(self, path: str) -> Availability | None:
+        target, symbol = self.target, Symbol("header", path)
         if path in self.workspace.broken_headers:
-            return Misnamed(f"no package of the workspace has or generates `{path}`", "")
+            return Availability(symbol, "removed", form="broken")
         if self.providers.system_has(path, target.platform) is False and all(
             p.kind == "system" for p in self.header(path)
         ):
-            return Misnamed(f"no package of {target.platform} has `{path}`", "", closed=True)
+            return Availability(symbol, "removed", target.platform, form="platform")
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
-        lacking = []
-        for name in owners:
-            version = target.version(name)
-            if version is None:
-                continue
-            has = self.providers.has_header(name, path, target.distro, version)
-            if has is not False:
-                return None
-            lacking.append((name, version))
-        if not lacking:
+        lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
+        if not lacking or any(self.providers.has_header(n, path, target.distro, v) is not False for n, v in lacking):
             return None
         name, version = lacking[0]
         if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
             return None
         if not self.providers.has_headers(name, target.distro, version):
             return None  # a release without any header in its tree gets them while it is built
-        spans = self.providers.header_history(name, path)
-        if not spans:
+        if not self.providers.header_history(name, path):
             head, _, rest = path.partition("/")
             if rest.startswith(head + "/") and self.providers.has_header(name, rest, target.distro, version):
-                return Misnamed(f"`{path}` is not installed by {name} {version}", f"include `{rest}`")
+                return Availability(symbol, "removed", name, version, replacement=rest, form="nested")
             return None
         other = self._renamed(name, path, version)
         evidence = Evidence(name, "removed", path, other, "header", header=path)
-        return Misnamed(f"`{path}` is not in {name} {version}", f"include `{other}`" if other else "", evidence)
+        return Availability(symbol, "removed", name, version, replacement=other, evidence=evidence)
 
     def has_released_header(self, package: str, path: str) -> bool | None:
         """Whether the target's release of a package has a header; None when its tree is not known."""
@@ -522,192 +495,6 @@ class View:
             if other != path and self.providers.has_header(name, other, self.target.distro, version):
                 return other
         return ""
-
-    # -- interfaces of released packages -------------------------------------------------------------------------------
-
-    def _interfaces_of(self, package: str, target: Target | None = None) -> tuple[History, int, str] | None:
-        """All versions of a released package's interfaces, the state that holds here (or there), and the version."""
-        if package in self.workspace.packages:
-            return None
-        version = (target or self.target).version(package)
-        history = default_fields().history(package, self.target.ros) if version else None
-        state = history.state(version) if history is not None and version else None
-        return None if history is None or state is None or not version else (history, state, version)
-
-    def coming_member(self, use: MemberUse) -> Misnamed | None:
-        """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
-        return next((c for ahead in self.updates if (c := self._coming_member(use, ahead))), None)
-
-    def _coming_member(self, use: MemberUse, ahead: Horizon) -> Misnamed | None:
-        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, ahead.target)
-        if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
-            return None
-        definition = now[0].definition(use.interface)
-        if definition is None or not there(definition.spans, later[1]):
-            return None
-        rows = definition.members(use.section, use.member)
-        if any(there(row.spans, later[1]) for row in rows) or not any(there(row.spans, now[1]) for row in rows):
-            return None
-        spans = [span for row in rows for span in row.spans]
-        lost = _field_lost(use.package, now[0], spans, later[1])._replace(name=use.member, ahead=True)
-        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], ahead, lost)
-
-    def coming_interface(self, path: str) -> Misnamed | None:
-        """The same for the interface of a generated header."""
-        return next((c for ahead in self.updates if (c := self._coming_interface(path, ahead))), None)
-
-    def _coming_interface(self, path: str, ahead: Horizon) -> Misnamed | None:
-        head, _, _, name = self._generated(path)
-        now, later = self._interfaces_of(head), self._interfaces_of(head, ahead.target)
-        if not name or not now or not later or now[1] >= later[1]:
-            return None
-        spans = now[0].spans(name)
-        if spans is None or not there(spans, now[1]) or there(spans, later[1]):
-            return None
-        lost = _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True)
-        return self._goes(f"`{path}`", head, later[2], ahead, lost)
-
-    def _goes(self, what: str, package: str, version: str, ahead: Horizon, evidence: Evidence) -> Misnamed:
-        message = f"{what} will be removed: not in {package} {version} ({ahead.name})"
-        return Misnamed(message, "", evidence, ahead)
-
-    def _generated(self, path: str) -> tuple[str, str, str, str]:
-        """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
-        head, _, rest = path.partition("/")
-        stem, _, ending = rest.rpartition(".")
-        if not stem or ending != ("hpp" if "/" in stem else "h") or ("/" in stem) != (self.target.ros == 2):
-            return head, rest, stem, ""
-        history = default_fields().history(head, self.target.ros)
-        return head, rest, stem, (history.by_header.get(stem, "") if history is not None else "")
-
-    def lacking_member(self, use: MemberUse) -> Misnamed | None:
-        """What is wrong when the target's version of an interface lacks a member that another version has."""
-        known = self._interfaces_of(use.package) if use.ros == self.target.ros else None
-        definition = known and known[0].definition(use.interface)
-        if not known or not definition or not there(definition.spans, known[1]):
-            return None
-        history, state, version = known
-        rows = definition.members(use.section, use.member)
-        if not rows or any(there(row.spans, state) for row in rows):
-            return None
-        name = f"{use.package}/{use.interface}"
-        spans = [span for row in rows for span in row.spans]
-        if history.may_be_back(spans, version):
-            return None
-        if any(before(row.spans, state) for row in rows):
-            lost = _field_lost(use.package, history, spans, state)._replace(name=use.member)
-            reviewed = self._successors.get((use.package, _told(use)))
-            if reviewed:
-                return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
-                                f"use `{reviewed}`", lost)  # fmt: skip
-            successor = next((row.successor for row in rows if row.successor), "")
-            if successor and not any(there(r.spans, state) for r in definition.members(use.section, successor)):
-                successor = ""
-            return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
-                            f"perhaps `{successor}` stands for it" if successor else "", lost)  # fmt: skip
-        if not history.read_up_to(version):
-            return None
-        since = history.starts[min(first for first, _ in spans)]
-        return Misnamed(f"`{use.member}` is not yet in `{name}` of {use.package} {version}",
-                        f"it is there since {use.package} {since}",
-                        Evidence(use.package, "added", use.member, first=since))  # fmt: skip
-
-    @cached_property
-    def _successors(self) -> dict[tuple[str, str], str]:
-        """What the reviewed table says stands for a field: by package and `Name.field` or `Name_Part.field`."""
-        return {
-            (c.package, c.old.partition("/")[2]): c.new.rpartition(".")[2]
-            for c in self.changes("msg-field")
-            if c.new and c.state == "removed"
-        }
-
-    def lost_interface(self, path: str) -> Misnamed | None:
-        """What is wrong with the include of a generated header whose interface the target's version lacks."""
-        head, rest, stem, name = self._generated(path)
-        if head in self.workspace.packages:
-            return self._moved_interface(head, rest, stem, bool(name))
-        known = self._interfaces_of(head)
-        if not known:
-            return None
-        return self._lost_interface_named(head, name, known) if name else self._never_interface(path, rest, known[0])
-
-    def _never_interface(self, path: str, rest: str, history: History) -> Misnamed | None:
-        """What is wrong with a path that looks like that of a generated header, where no version of the package that
-        was read has such an interface, all of them were read up to the target's, and the release has no such file."""
-        head = path.partition("/")[0]
-        version = self.target.version(head) or ""
-        if not _GENERATED_HEADER[self.target.ros].match(rest) or not history.read_up_to(version):
-            return None
-        if self.providers.header_history(head, path) or self.has_released_header(head, path) is not False:
-            return None
-        close = nearest(rest.rpartition(".")[0], Names(s for s in history.by_header if ("/" in s) == ("/" in rest)))
-        ending = rest.rpartition(".")[2]
-        return Misnamed(f"no version of {head} has an interface for `{path}`",
-                        f"did you mean `{head}/{close}.{ending}`?" if close else "", never=True)  # fmt: skip
-
-    def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:
-        """The same where the package is in the workspace: another one there defines the interface. once: some release
-        of the package had it."""
-        if ("/" in stem) != (self.target.ros == 2) or not (once or _CAMEL.match(stem)):
-            return None
-        makers = [
-            name for name in self.workspace.interface_names
-            if name != head and self.workspace.is_interface_header(name, rest)
-        ]  # fmt: skip
-        if len(makers) != 1:
-            return None
-        return Misnamed(f"`{head}` generates no `{head}/{rest}`", f"include `{makers[0]}/{rest}`")
-
-    def lost_interface_module(self, module: str, name: str) -> Misnamed | None:
-        """What is wrong with `from package.kind import Name` when the target's version lacks the interface."""
-        head, _, kind = module.partition(".")
-        if kind not in ("msg", "srv", "action"):
-            return None
-        known = self._interfaces_of(head)
-        full = f"{kind}/{name}"
-        return self._lost_interface_named(head, full, known) if known and known[0].spans(full) is not None else None
-
-    def _lost_interface_named(self, package: str, name: str, known: tuple[History, int, str]) -> Misnamed | None:
-        history, state, version = known
-        spans = history.spans(name)
-        if spans is None or there(spans, state) or history.may_be_back(spans, version):
-            return None
-        if before(spans, state):
-            return Misnamed(f"`{package}/{name}` is no longer in {package} {version}", "",
-                            _field_lost(package, history, spans, state)._replace(name=name))  # fmt: skip
-        if not history.read_up_to(version):
-            return None
-        since = history.starts[min(first for first, _ in spans)]
-        return Misnamed(f"`{package}/{name}` is not yet in {package} {version}", f"it is there since {package} {since}",
-                        Evidence(package, "added", name, first=since))  # fmt: skip
-
-    def misnamed_interface(self, path: str) -> Misnamed | None:
-        """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
-        head, _, rest = path.partition("/")
-        if not rest or not self.generates_interfaces(head):
-            return None
-        parts = rest.split("/")
-        name = parts[-1].rsplit(".", 1)[0]
-        if self.target.ros == 2:
-            if len(parts) == 1 and path.endswith(".h") and _CAMEL.match(name) and "_" not in name:
-                folder = "srv" if name.endswith(("Request", "Response")) else "msg"
-                return Misnamed(f"`{path}` is the ROS 1 name of a generated header",
-                                f"include `{head}/{folder}/{snake(name)}.hpp`")  # fmt: skip
-            if len(parts) == 2 and parts[0] in ("msg", "srv", "action") and name != name.lower():
-                return Misnamed(f"generated headers are in lower case, so there is no `{path}`",
-                                f"include `{head}/{parts[0]}/{snake(name).replace('__', '_')}.hpp`")  # fmt: skip
-        elif len(parts) == 2 and parts[0] in ("msg", "srv", "action") and path.endswith(".hpp"):
-            return Misnamed(f"`{path}` is the ROS 2 name of a generated header", f"include `{head}/<Name>.h`")
-        return None
-
-    def generates_interfaces(self, name: str) -> bool:
-        """True for packages that make headers from messages, services or actions, as far as their name tells it."""
-        package = self.workspace.packages.get(name)
-        if package is not None:
-            return package.is_interface_package
-        if not name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
-            return False
-        return self.target.version(name) is not None
 
     def around(self, path: str) -> frozenset[str]:
         """Who could answer an include path, all that is installed along with them, and the platform libraries that
@@ -807,7 +594,7 @@ class View:
         newest = self.newest
         return newest.distro if newest is not None else ""
 
-    def concerned(self, package: Package, change: Change, path: str) -> bool:
+    def concerned(self, package: Package, change: Change | Row, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
@@ -859,6 +646,11 @@ class View:
         return known
 
     @cached_property
+    def brought_to_workspace(self) -> frozenset[str]:
+        """Everything on a machine that has just what all packages of the workspace declare."""
+        return frozenset().union(*(self.closure(package) for package in self.everyone()))
+
+    @cached_property
     def apt(self) -> Apt:
         """What comes along with the platform's packages."""
         return apt_of(self.target.platform)
@@ -869,18 +661,23 @@ class View:
         return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     def may_bring(self, package: Package) -> frozenset[str]:
-        """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
-        in it is sure to be missing, unless the package is blind()."""
+        """closure(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
         known = self._widest.get(package.name)
         if known is None:
-            found, waiting = set(self.closure(package)), list(self.closure(package))
-            while waiting:
-                for other in self._possibly_with(waiting.pop()):
-                    if other not in found:
-                        found.add(other)
-                        waiting.append(other)
-            known = self._widest[package.name] = frozenset(found)
+            known = self._widest[package.name] = self.widest_spread(self.closure(package))
         return known
+
+    def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
+        """spread(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro."""
+        found, waiting = set(names), list(names)
+        while waiting:
+            for other in self._possibly_with(waiting.pop()):
+                if other not in found:
+                    found.add(other)
+                    waiting.append(other)
+        return frozenset(found)
 
     @cached_property
     def roles(self) -> Roles:
@@ -888,10 +685,14 @@ class View:
         return Roles(self)
 
     def _possibly_with(self, name: str) -> Iterable[str]:
-        if name in self.workspace.packages or self.target.dependencies(name) is not None:
+        if name in self.workspace.packages:
             return self._installed_with(name)
         if name not in self._possible:
-            self._possible[name] = self.target.possible_dependencies(name)
+            self._possible[name] = (
+                self.target.possible_dependencies(name)
+                if self.target.dependencies(name) is None
+                else self.target.later_dependencies(name).union(self._installed_with(name))
+            )
         return self._possible[name]
 
     def _built_with(self, package: Package) -> list[str]:
@@ -945,17 +746,21 @@ class View:
         this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
         unknown = self._unknown.get(package.name)
         if unknown is None:
-            target = self.target
-            unknown = self._unknown[package.name] = tuple(
-                n for n in self.closure(package)
-                if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
-                and not target.known_key(n)  # a key that the platform lacks brings nothing
-                and target.dependencies(n) is None and target.similar_dependencies(n) is None
-                and not target.other_generation(n)  # nor does a package that cannot be had
-            )  # fmt: skip
+            unknown = self._unknown[package.name] = self.list_unknown(self.closure(package))
         if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
             return any(not _INTERFACES.search(n) for n in unknown)
         return bool(unknown)
+
+    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Those of the names whose dependencies are not known anywhere."""
+        target = self.target
+        return tuple(
+            n for n in names
+            if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
+            and target.dependencies(n) is None and target.similar_dependencies(n) is None
+            and not target.other_generation(n)  # nor does a package that cannot be had
+        )  # fmt: skip
 
     def sealed(self, package: Package) -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
@@ -1167,7 +972,9 @@ class View:
                 if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
                 else "build",
                 certain,
-                found.required or (found.how == "catkin" and not found.quiet),
+                found.required
+                or (found.how == "catkin" and not found.quiet)
+                or (found.name == "PkgConfig" and self._requires_modules(package)),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -1211,6 +1018,12 @@ class View:
                 not reference.conditional,
             )
 
+    def _requires_modules(self, package: Package) -> bool:
+        """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
+        found the program."""
+        asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
+        return any(self.certain(f.conditions) for f in asked)
+
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         name = re.split(r"[<>=]", found.name)[0]
@@ -1250,18 +1063,8 @@ class View:
         if providers and providers[0].name and found.name not in self.apt.base:
             certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
             role = "test" if for_tests(found.conditions) else "build"
-            yield Need("program", found.name, providers, found.at, role, certain)
-
-
-def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:
-    """That what some states of a package's interfaces had is gone in a later one."""
-    ends = [last for _, last in spans if 0 <= last < state]
-    return Evidence(package, "removed", first=history.starts[max(ends) + 1] if ends else "")
-
-
-def _told(use: MemberUse) -> str:
-    name = use.interface.rpartition("/")[2]
-    return f"{name}{'' if use.section == 'message' else '_' + use.section.capitalize()}.{use.member}"
+            required = self.certain(found.conditions)
+            yield Need("program", found.name, providers, found.at, role, certain, required)
 
 
 @lru_cache(maxsize=10000)

@@ -95,10 +95,6 @@ class Package:
         """True when a file lies in the folder (relative to the package)."""
         return (f"{self.path}/{folder}" if self.path else folder) in self.folders
 
-    @property
-    def tests_enabled(self) -> bool:
-        return any(t.kind == "test" for t in self.build.targets)
-
 
 class Workspace:
     """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""

@@ -36,7 +36,7 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence import Evidence
 from .fix_actions import Declare, Insert, Remove, Replace
@@ -65,18 +65,19 @@ class Diagnostic(NamedTuple):
     at: anything with path, line, column. subject: one name, the thing at fault, as a person would type it. package:
     the package of the place. data: the values that the rule's texts name, beside subject and package; every rule calls
     a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
-    of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity.
+    of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity, as
+    severity() takes it.
     severity: where the policy was asked already; else empty. fix: actions that repair it, see fix_actions.py; kept only
     when every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds
     how each target stands to it.
     """
 
-    at: object
+    at: Any
     subject: str
     package: str = ""
     data: Mapping[str, Value] = {}
     kind: str = ""
-    doubts: tuple[Doubt, ...] = ()
+    doubts: tuple[Doubt | bool | None, ...] = ()
     severity: str = ""
     fix: tuple[Cure, ...] = ()
     evidence: Evidence | None = None
@@ -98,7 +99,7 @@ class Hit(NamedTuple):
     message: one clause, code in backticks. help: what to do, or empty. severity: empty for the rule's own.
     """
 
-    at: object
+    at: Any
     subject: str
     message: str
     help: str = ""
@@ -184,6 +185,7 @@ class Rule(NamedTuple):
             if lacking:
                 raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
             try:
+                severity(*diagnostic.doubts)
                 text.render([("", diagnostic.values)])
             except (ValueError, TypeError) as error:
                 raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None

@@ -30,6 +30,7 @@ class Doubt(enum.Enum):
     GUARDED = "a test in the code itself stands around it, which most likely tells the versions apart", "note"
     UNCOMPILED = "nothing in the package compiles it on its own", "note"
     EXAMPLE = "it is an example, or documentation", "note"
+    DISPENSABLE = "builds and programs go on without it, at least where a condition does not hold", "note"
     # Of the evidence
     INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
     AMBIGUOUS = "something else of the same name may be meant", "warning"
@@ -37,6 +38,7 @@ class Doubt(enum.Enum):
     # Of what follows
     UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
     FAR = "it holds only some long-term distros later", "note"
+    LUCKY = "it is there as long as something else that is declared happens to bring it", "warning"
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
     CHANGED = "it is built and runs, and does something else", "note"
     DEPRECATED = "it is there, and produces a warning", "note"
@@ -80,6 +82,13 @@ def doubts_of_place(view: View, role: str, conditions: Iterable[Condition] = ())
     return tuple(doubts)
 
 
+AT_RUN_TIME = 1
+"""How many things that a package runs with and does not declare are worth a warning: launch files and modules are used
+one by one, and whoever declares the first looks for the others."""
+EXPORTED = 3
+"""How many things that a package does not hand on to dependants are worth a warning."""
+
+
 class Repeats:
     """Lowers what a package has been warned of already. One for each run of a rule, or for each package of it.
 
@@ -90,10 +99,10 @@ class Repeats:
         self._count: dict[Hashable, int] = {}
 
     def severity(self, kind: Hashable, *doubts: Doubt | bool | None) -> str:
-        """As severity() has it for the first findings of a kind, and a note for the rest. What is a note anyway does
-        not count, so that findings are to be given in the order in which they are to be read."""
+        """As severity() has it, but for warnings after the first ones of a kind, which become notes. Findings are to be
+        given in the order in which they are to be read."""
         plain = severity(*doubts)
-        if plain == "note":
+        if plain != "warning":
             return plain
         self._count[kind] = self._count.get(kind, 0) + 1
         return plain if self._count[kind] <= self._most else severity(Doubt.REPEATED)

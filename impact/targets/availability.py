@@ -12,9 +12,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
-from typing import Literal, NamedTuple
 
-from .changes import DISTROS, Row, all_rows, reached, version_of
+from .changes import DISTROS, Row, all_rows, reached, removed_in, version_of
 from .distro.known import known_distros
 from .evidence import Evidence, evidence_of, of_offered
 from .providers.providers import Providers, default_providers
@@ -22,9 +21,8 @@ from .surface.changes import PARAMETER
 from .surface.fields import before, default_fields, there
 from .surface.offers import Offer, Offered, Offers
 from .surface.surface import BuildSurface
+from .symbol import Availability, Horizon, State, Symbol
 from .target import Change, Target
-
-State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
 
 # Parts of a build by kind: what of a surface can be unknown as a whole, and the names that one version has.
 _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
@@ -57,59 +55,6 @@ _ROWS = {
     "package": ("package-removed", "package-renamed"),
 }
 """Kinds of reviewed rows by what they are about."""
-
-
-class Symbol(NamedTuple):
-    """Something that may be there or not. kind: `package`, `header`, `c++`, `python`, `command`, `target`, `variable`,
-    `executable`, `plugin`, `launch file`, `launch argument` (name: `path argument`), `parameter`, `interface` (name:
-    `msg/Name`) or `field` (name: `msg/Name.field`). packages: that may have it; of platform libraries none."""
-
-    kind: str
-    name: str
-    packages: tuple[str, ...] = ()
-
-
-class Horizon(NamedTuple):
-    """What a target is going to be. name: as a message has it. soon: with the next sync, which the distro's build farm
-    builds against already. platform: the newest distro, of which only the platform counts: libraries and Python. What
-    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
-    long-term distros ahead, which is worth no warning."""
-
-    target: Target
-    name: str
-    soon: bool = False
-    platform: bool = False
-    far: bool = False
-
-
-class Availability(NamedTuple):
-    """How a target stands to a symbol.
-
-    state: `present`; `removed`, earlier versions of this ROS generation had it; `not yet`, only later ones have it;
-    `changed`, there under the same name, and something else; `deprecated`, there, and it warns; `upcoming`, there, and
-    removed on the horizon; `unknown`. package, version: of what decides, as the target (or, of what is upcoming, the
-    horizon) has it. since: the version that removed, added or deprecated it, as far as it is known. replacement: what
-    stands for it, moved_to: the package that has it now. alike: what is there under a similar name. library: package is
-    a platform library. sure: nothing about it is guessed. horizon: where it is removed, of what is upcoming.
-    """
-
-    symbol: Symbol
-    state: State
-    package: str = ""
-    version: str = ""
-    since: str = ""
-    replacement: str = ""
-    moved_to: str = ""
-    alike: str = ""
-    library: bool = False
-    sure: bool = True
-    evidence: Evidence | None = None
-    horizon: Horizon | None = None
-
-    @property
-    def is_missing(self) -> bool:
-        """Whether a use of it fails on the target."""
-        return self.state in ("removed", "not yet")
 
 
 def horizons(target: Target, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
@@ -190,8 +135,7 @@ class Availabilities:
         for horizon, then in self._ahead:
             found = then.of(symbol)
             if found.state == "removed" and (found.library or not horizon.platform):
-                evidence = found.evidence._replace(ahead=True) if found.evidence is not None else None
-                return found._replace(state="upcoming", horizon=horizon, evidence=evidence)
+                return found.on(horizon)
         return here
 
     @cached_property
@@ -316,22 +260,28 @@ class Availabilities:
     # Interfaces and their fields
 
     def _interface(self, symbol: Symbol) -> Availability:
-        name, _, member = symbol.name.partition(".")
+        name, *parts = symbol.name.split(".")
+        member = parts[-1] if parts else ""
         for package in symbol.packages:
             version = self.target.version(package)
             history = default_fields().history(package, self.target.ros) if version else None
             state = history.state(version) if history is not None and version else None
             if history is None or state is None or not version:
                 continue
+            instead = ""
             if member:
                 definition = history.definition(name)
-                rows = [] if definition is None or not there(definition.spans, state) else [
-                    row for section in definition.sections for row in definition.members(section, member)
-                ]  # fmt: skip
+                if definition is None or not there(definition.spans, state):
+                    continue
+                sections = parts[:-1] or definition.sections
+                rows = [row for section in sections for row in definition.members(section, member)]
                 spans = tuple(span for row in rows for span in row.spans)
-                instead = next((row.successor for row in rows if row.successor), "")
+                successor = next((row.successor for row in rows if row.successor), "")
+                # The comparison of versions only guesses what came for a field.
+                if any(there(row.spans, state) for one in sections for row in definition.members(one, successor)):
+                    instead = successor
             else:
-                spans, instead = history.spans(name) or (), ""
+                spans = history.spans(name) or ()
             if not spans:
                 continue
             if there(spans, state):
@@ -342,12 +292,23 @@ class Availabilities:
                 ends = [last for _, last in spans if 0 <= last < state]
                 since = history.starts[max(ends) + 1] if ends else ""
                 evidence = Evidence(package, "removed", member or name, first=since)
-                return Availability(symbol, "removed", package, version, since, instead, evidence=evidence)
+                reviewed = self._reviewed_field(package, name, parts) if member else ""
+                return Availability(symbol, "removed", package, version, since, reviewed,
+                                    alike="" if reviewed else instead, evidence=evidence)  # fmt: skip
             if history.read_up_to(version):
                 since = history.starts[min(first for first, _ in spans)]
                 evidence = Evidence(package, "added", member or name, first=since)
                 return Availability(symbol, "not yet", package, version, since, evidence=evidence)
         return Availability(symbol, "unknown")
+
+    def _reviewed_field(self, package: str, interface: str, parts: list[str]) -> str:
+        """What a reviewed row says stands for a field; rows call it `Name.field` or `Name_Part.field`."""
+        section = "" if parts[:-1] in ([], ["message"]) else f"_{parts[0].capitalize()}"
+        name = f"{interface.rpartition('/')[2]}{section}.{parts[-1]}"
+        for change in self._rows.get(("msg-field", f"{package}/{name}"), ()):
+            if change.new and change.state == "removed" and change.package == package:
+                return change.new.rpartition(".")[2]
+        return ""
 
     # Reviewed rows
 
@@ -378,14 +339,17 @@ def _removals() -> dict[str, list[Row]]:
 
 def of_row(symbol: Symbol, change: Change) -> Availability:
     """What a reviewed row says of a symbol."""
-    state: State = "changed" if change.kind == "api-changed" else "removed"
+    state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
+    since, earlier = removed_in(change), True
     if change.state == "absent":
-        state = "not yet"
+        since, earlier = change.since, False
+        state = state if change.kind == "call-changed" else "not yet"
     elif change.state == "deprecated":
-        state = "deprecated"
-    other = change.old if change.state == "absent" else change.new
-    return Availability(symbol, state, change.package, change.version, change.since, other, library=change.library,
-                        evidence=evidence_of(change))  # fmt: skip
+        state, since = "deprecated", ""
+    other = change.old if state == "not yet" else change.new
+    return Availability(symbol, state, change.package, change.version, since, other, library=change.library,
+                        evidence=evidence_of(change), replacement_since=change.since if earlier else "",
+                        earlier=earlier)  # fmt: skip
 
 
 def decides(offer: Offer, offered: Offered) -> bool:

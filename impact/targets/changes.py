@@ -1,30 +1,46 @@
-"""Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing.
+"""Known upstream changes: what a version of a ROS package or platform library removed, renamed, stopped bringing, takes
+no longer in a call, or does differently.
 
-The facts are in `data/changes*.json`, reviewed, each with its source; those of changes_debian.json are read from
-packages (build/debian.py), and count where no other file treats the name. A change is judged on a target by versions;
-for headers of ROS packages whose source trees are in the provider table, by what the very release has.
+The facts are in `data/changes*.json` (names), `uses*.json` (calls and members that only some versions take) and
+`behaviour.json` (the name and the call stay, and another result comes out), reviewed, each with its source; those of
+changes_debian.json are read from packages (databuild/debian.py), and count where no other file treats the name. A
+change is judged on a target by versions; for headers of ROS packages whose source trees are in the provider table, by
+what the very release has.
 """
 
 from __future__ import annotations
 
+import hashlib
 from functools import cache
 from typing import Literal, NamedTuple
 
 import msgspec
 
+from ..facts.usage import Pattern
 from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError
 from .target import Change, Target
 from .version import at_least
 
 
-class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Rows of data/changes.json that share all but the names. names: old to new (empty: nothing instead)."""
+class _Shared(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What rows of one group have in common.
 
-    kind: str
+    kind: as in Change, `call-changed` of uses, `behaviour` of what behaves differently. package: a ROS package or,
+    where library is set, a platform library. removed_in, deprecated_in, new_since: a version, or the first ROS distro;
+    `ros2` is all of ROS 2; empty: not known or not yet. Of behaviour, removed_in is the version that changed it, and
+    back_in the one that changed it back. new_in: where the distro's name does not tell, distro to the first version
+    that has the new name (empty: never there). back_in: a version that has the old name again. ambiguous: the bare name
+    is a common word. unless: endings of include paths that bring the old name back. ros: the generation of ROS whose
+    versions are meant, for packages that both have and number apart; 0: either. last_in: where two packaged versions
+    were compared, the one that has the old name; what versions between it and removed_in have is not known. Empty for
+    reviewed rows. refused_from, needs: the year of the C++ standard from which on, or before which, the compiler does
+    not take a use; 0: whatever the standard.
+    """
+
+    kind: str = "behaviour"
     package: str
     source: str
-    names: dict[str, str]
     library: bool = False
     removed_in: str = ""
     back_in: str = ""
@@ -36,37 +52,41 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     note: str = ""
     ros: int = 0
     last_in: str = ""
+    refused_from: int = 0
+    needs: int = 0
 
 
-class Row(NamedTuple):
+class _Use(Pattern, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How a use looks in code, and what to write where it is not taken, or in all versions. clause: what it does now.
+    imports: modules of which a Python file imports one."""
+
+    help: str = ""
+    clause: str = ""
+    imports: tuple[str, ...] = ()
+
+
+class _Group(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """names: old to new (empty: nothing instead). uses: by label. help: of all uses that say nothing of their own.
+    since, until: of behaviour, removed_in and back_in."""
+
+    names: dict[str, str] = {}
+    uses: dict[str, _Use] = {}
+    help: str = ""
+    since: str = ""
+    until: str = ""
+
+
+class Row(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One known change, on any target.
 
-    kind: as in Change. package: a ROS package or, where library is set, a platform library. old: an include path, a
-    package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`, `numpy.float`); new: what stands for it.
-    removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known
-    or not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
-    never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless:
-    endings of include paths that bring the old name back. ros: the generation of ROS whose versions are meant, for
-    packages that both have and number apart; 0: either. last_in: where two packaged versions were compared, the one
-    that has the old name; what versions between it and removed_in have is not known. Empty for reviewed rows.
+    old: an include path, a package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`,
+    `numpy.float`); new: what stands for it. Of a use, old is its label as a user reads it, which no other row has, new
+    what to write instead, and pattern how it looks.
     """
 
-    kind: str
-    package: str
     old: str
-    new: str
-    library: bool
-    removed_in: str
-    back_in: str
-    deprecated_in: str
-    new_since: str
-    new_in: dict[str, str]
-    ambiguous: bool
-    unless: tuple[str, ...]
-    source: str
-    note: str
-    ros: int = 0
-    last_in: str = ""
+    new: str = ""
+    pattern: _Use | None = None
 
 
 class TransitiveInclude(NamedTuple):
@@ -94,46 +114,97 @@ class _TransitiveGroup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    changes: list[_Group]
-    transitive: list[_TransitiveGroup]
+    changes: list[_Group] = []
+    uses: list[_Group] = []
+    behaviour: list[_Group] = []
+    transitive: list[_TransitiveGroup] = []
+
+
+def _read(pattern: str, *last: str) -> list[_File]:
+    """The files of a pattern. last: those that come last."""
+    found = []
+    for path in sorted(DATA.glob(pattern), key=lambda path: (path.name in last, path.name)):
+        try:
+            found.append(msgspec.json.decode(path.read_bytes(), type=_File))
+        except (OSError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return found
 
 
 @cache
-def _file() -> _File:
-    """All data/changes*.json together. A name that two files treat counts as in the more special one; what that does
-    not say of it is taken from the other."""
-    changes: list[_Group] = []
-    transitive: list[_TransitiveGroup] = []
-    # What was read from packages comes last, since nobody reviewed it; before it the general table, since the others
-    # were compared with headers and tags.
-    last = ("changes.json", "changes_debian.json", "changes_library_tags.json")
-    for path in sorted(DATA.glob("changes*.json"), key=lambda path: (path.name in last, path.name)):
-        try:
-            file = msgspec.json.decode(path.read_bytes(), type=_File)
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
-        changes += file.changes
-        transitive += file.transitive
-    return _File(changes, transitive)
+def _files() -> list[_File]:
+    """All data/changes*.json. A name that two files treat counts as in the more special one; what that does not say of
+    it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
+    table, since the others were compared with headers and tags."""
+    return _read("changes*.json", "changes.json", "changes_debian.json", "changes_library_tags.json")
+
+
+def _shared_of(group: _Group) -> dict:
+    return {name: getattr(group, name) for name in _Shared.__struct_fields__}
 
 
 @cache
 def all_rows() -> tuple[Row, ...]:
-    """Every known change. Raises SnapshotError when the data file cannot be read."""
-    rows = [
-        Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.new_in,
-            g.ambiguous, g.unless, g.source, g.note, g.ros, g.last_in)
-        for g in _file().changes
-        for old, new in g.names.items()
-    ]  # fmt: skip
+    """Every known change of names. Raises SnapshotError when the data file cannot be read."""
     known: dict[tuple[str, str, str], Row] = {}
-    for row in rows:
-        first = known.setdefault((row.kind, row.package, row.old), row)
-        if first is not row:
-            both = tuple(dict.fromkeys(first.unless + row.unless))
-            since = first.new_since or (row.new_since if row.new == first.new else "")
-            known[row.kind, row.package, row.old] = first._replace(unless=both, new_since=since)
+    for group in (group for file in _files() for group in file.changes):
+        shared = _shared_of(group)
+        for old, new in group.names.items():
+            row = Row(old=old, new=new, **shared)
+            first = known.setdefault((row.kind, row.package, old), row)
+            if first is not row:
+                both = tuple(dict.fromkeys(first.unless + row.unless))
+                since = first.new_since or (row.new_since if new == first.new else "")
+                known[row.kind, row.package, old] = msgspec.structs.replace(first, unless=both, new_since=since)
     return tuple(known.values())
+
+
+@cache
+def all_uses(kind: str = "call-changed") -> dict[str, Row]:
+    """Every known change of uses, or of behaviour, by label. Raises SnapshotError when a file cannot be read, or two
+    rows have one label."""
+    found: dict[str, Row] = {}
+    for group in (g for file in _read(_USES[kind]) for g in (*file.uses, *file.behaviour)):
+        shared = _shared_of(group)
+        if kind == "behaviour":
+            shared |= {"removed_in": group.since, "back_in": group.until}
+        for label, use in group.uses.items():
+            if label in found:
+                raise SnapshotError(f"{DATA}: two uses are called `{label}`; install rosimpact again")
+            found[label] = Row(old=label, new=use.help or group.help, pattern=use, **shared)
+    return found
+
+
+_USES = {"call-changed": "uses*.json", "behaviour": "behaviour.json"}
+
+
+@cache
+def stamp_of_uses() -> str:
+    """Differs whenever a table of uses does."""
+    paths = (path for pattern in _USES.values() for path in sorted(DATA.glob(pattern)))
+    return hashlib.sha1(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+
+
+@cache
+def looked_for() -> dict[str, list[tuple[str, Pattern]]]:
+    """The uses of C++, and what behaves otherwise, with their labels, by a word that stands in each."""
+    found: dict[str, list[tuple[str, Pattern]]] = {}
+    for row in (*all_uses().values(), *all_uses("behaviour").values()):
+        if row.pattern is not None and row.pattern.language == "cpp":
+            found.setdefault(row.pattern.word, []).append((row.old, row.pattern))
+    return found
+
+
+def standards_of(label: str) -> tuple[int, int]:
+    """refused_from and needs of a use by its label."""
+    row = all_uses().get(label)
+    return (row.refused_from, row.needs) if row is not None else (0, 0)
+
+
+def function_of(label: str) -> str:
+    """The function that a use calls, by its label; empty for other uses."""
+    row = all_uses().get(label)
+    return row.pattern.word if row is not None and row.pattern is not None and row.pattern.calls else ""
 
 
 @cache
@@ -141,7 +212,8 @@ def transitive_includes() -> tuple[TransitiveInclude, ...]:
     """Every header that is known to have stopped coming along. Raises SnapshotError when the data cannot be read."""
     return tuple(
         TransitiveInclude(name, g.headers, g.library, g.since, g.sure, g.source)
-        for g in _file().transitive
+        for file in _files()
+        for g in file.transitive
         for name in g.names
     )
 
@@ -170,7 +242,7 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     table = providers or default_providers()
     found = []
     versions: dict[tuple[str, bool, bool], str | None] = {}
-    for row in all_rows():
+    for row in (*all_rows(), *all_uses().values()):
         if row.ros and row.ros != target.ros:
             continue
         owner = row.package, row.library, bool(row.last_in)
@@ -207,6 +279,10 @@ def version_of(package: str, library: bool, target: Target, derived: bool = Fals
 
 
 def _state(row: Row, version: str, target: Target, table: Providers) -> State | None:
+    if row.pattern is not None:
+        if reached(row.removed_in, version, target) and not reached(row.back_in, version, target):
+            return "removed"
+        return "absent" if row.new_since and not reached(row.new_since, version, target) else None
     if row.kind.startswith("package-"):
         # The package is there: at most on its way out.
         return "deprecated" if reached(row.deprecated_in, version, target) else None
@@ -233,6 +309,15 @@ def _state(row: Row, version: str, target: Target, table: Providers) -> State | 
     if new is False:
         return "absent"
     return "deprecated" if reached(row.deprecated_in, version, target) else None
+
+
+def behaves_differently(row: Row, target: Target) -> bool | None:
+    """Whether a target has the new behaviour that a row describes; None where it has not the package, or one of another
+    generation."""
+    version = version_of(row.package, row.library, target)
+    if not version or (row.removed_in in DISTROS and not _same_generation(row.removed_in, target)):
+        return None
+    return reached(row.removed_in, version, target) and not reached(row.back_in, version, target)
 
 
 def _still(table: Providers, package: str, header: str, distro: str, version: str) -> bool:

@@ -10,12 +10,11 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from .changes import DISTROS, Row, all_rows, reached, version_of
+from .changes import DISTROS, Row, all_rows, all_uses, reached, version_of
 from .distro.known import known_distros, releases
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
 from .target import Change, DatedTarget, Target
-from .uses import all_uses
 from .version import at_least, parts
 
 if TYPE_CHECKING:
@@ -76,35 +75,27 @@ class Evidence(NamedTuple):
 # -- from the reviewed tables ------------------------------------------------------------------------------------------
 
 
-def evidence_of(change: Change, *, ahead: bool = False) -> Evidence:
-    """The evidence for a known change of changes.py or uses.py. ahead: it is still to come where it is told."""
-    return _evidence_of(change)._replace(ahead=ahead)
-
-
-def _evidence_of(change: Change) -> Evidence:
+def evidence_of(change: Change) -> Evidence:
+    """The evidence for a known change of changes.py."""
     row = _rows().get((change.kind, change.package, change.old))
-    if row is not None:
-        return _of_row(row, change.state)
-    use = _uses().get(change.old) if change.kind == "call-changed" else None
-    what = _WHAT.get(change.state, "removed")
-    if use is None:
+    if row is None:
+        what = _WHAT.get(change.state, "removed")
         return Evidence(change.package, what, library=change.library, source=change.source)
-    first = use.new_since if change.state == "absent" else use.removed_in
-    return Evidence(use.package, what, use.label, side="python" if use.pattern.language == "python" else "c++",
-                    last=use.last_in or _before(first, use.library, use.source, use.package), first=first,
-                    library=use.library, source=use.source)  # fmt: skip
+    if row.pattern is not None:
+        first = row.new_since if change.state == "absent" else row.removed_in
+        side = "python" if row.pattern.language == "python" else "c++"
+        return Evidence(row.package, _WHAT.get(change.state, "removed"), row.old, side=side,
+                        last=row.last_in or _before(first, row.library, row.source, row.package), first=first,
+                        library=row.library, source=row.source)  # fmt: skip
+    if change.state == "deprecated":
+        return _gone(row)._replace(change="deprecated", last="", first=row.deprecated_in, header="")
+    here, other = (_new(row), _gone(row)) if change.state == "absent" else (_gone(row), _new(row))
+    known = other.name and not row.back_in and (other.first or other.new_in or other.header)
+    return here._replace(other=other) if known else here
 
 
 _WHAT = {"absent": "added", "deprecated": "deprecated"}
 _SIDES = {"header": "header", "python": "python", "cmake": "cmake", "api": "c++"}
-
-
-def _of_row(row: Row, state: str) -> Evidence:
-    if state == "deprecated":
-        return _gone(row)._replace(change="deprecated", last="", first=row.deprecated_in, header="")
-    here, other = (_new(row), _gone(row)) if state == "absent" else (_gone(row), _new(row))
-    known = other.name and not row.back_in and (other.first or other.new_in or other.header)
-    return here._replace(other=other) if known else here
 
 
 def _gone(row: Row) -> Evidence:
@@ -149,12 +140,7 @@ def released_before(package: str, version: str) -> str:
 @cache
 def _rows() -> dict[tuple[str, str, str], Row]:
     # An absent name is known by its new spelling too, and the change keeps the old one.
-    return {(row.kind, row.package, row.old): row for row in all_rows()}
-
-
-@cache
-def _uses():
-    return {use.label: use for use in all_uses()}
+    return {(row.kind, row.package, row.old): row for row in (*all_rows(), *all_uses().values())}
 
 
 # -- from the stored surfaces ------------------------------------------------------------------------------------------

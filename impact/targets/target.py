@@ -128,6 +128,11 @@ class Target(Protocol):
         """The same in the nearest distro of this generation that knows it; likely, not sure."""
         ...
 
+    def later_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with the next later version, where this one's manifest is not known: what
+        dependencies() may lack."""
+        ...
+
     def possible_dependencies(self, package: str) -> frozenset[str]:
         """Names that come along with a package in some version of some distro of this generation: what it may bring
         where its own manifest is not known. Empty when none of it is."""

@@ -24,9 +24,9 @@ from ros_nodes import NodeFailed, Registered
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
-from rosimpact.impact.model.flow.rosrun import rosrun
 from rosimpact.impact.model.flow.workspace import joined, linked
 from rosimpact.impact.tree import WorkingTree
+from rosrun import rosrun
 
 SOURCES = os.environ.get("ROSIMPACT_DEBIAN_SOURCES", "")
 ROBOT = (

@@ -25,13 +25,12 @@ DOORS = {
         "corpus/labelling.py": "the journal of labels, which is locked while it is open",
     },
     ".read_bytes": {
-        "impact/cache.py": "our own modules",
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
-                "behaviour", "changes", "machine/sonames", "parameters", "providers/apt", "providers/includes",
+                "changes", "machine/sonames", "parameters", "providers/apt", "providers/includes",
                 "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields",
-                "surface/store", "uses",
+                "surface/store",
             )),
             _SHIPPED,
         ),

@@ -41,5 +41,5 @@ def test_what_the_header_said_before_a_name_went_is_repeated(tmp_path):
         (tmp_path / "arm" / name).write_text(text)
     found = check(tmp_path, Options(targets=("lyrical",), cache=tmp_path / "cache", jobs=1)).findings
     assert [(f.subject, f.help) for f in found if f.rule == "removed-symbol"] == [
-        ("control_toolbox::PidROS::initPid", "its header said: Use initialize_from_args() instead")
+        ("control_toolbox::PidROS::initPid", "its declaration says: Use initialize_from_args() instead")
     ]

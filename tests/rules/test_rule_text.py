@@ -138,4 +138,5 @@ def test_every_template_of_every_rule_can_be_rendered():
         for kind, text in rule.texts.items():
             names = re.findall(r"\{(\w+):[a-z ]{3,}\}", text.message + text.help)
             message, help = text.render([("", dict.fromkeys(text.fields, 1) | dict.fromkeys(names, ("x",)))])
-            assert message and not set("{}") & set(message + help), (rule.name, kind)
+            plain = re.sub(r"\$\{\w+\}", "", message + help)  # variables of CMake
+            assert message and not set("{}") & set(plain), (rule.name, kind)

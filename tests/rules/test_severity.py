@@ -73,4 +73,5 @@ def test_the_first_of_a_kind_speaks():
     ]
     assert given == ["note", "warning", "note", "warning"]
     twice = Repeats(2)
-    assert [twice.severity("x") for _ in range(3)] == ["error", "error", "note"]
+    assert [twice.severity("x", Doubt.LATE) for _ in range(3)] == ["warning", "warning", "note"]
+    assert [twice.severity("y") for _ in range(3)] == ["error"] * 3

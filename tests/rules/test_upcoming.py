@@ -1,11 +1,11 @@
 """What is there and will be gone: which places are warnings."""
 
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.api.upcoming import Upcoming, rated, rated_all
-from rosimpact.impact.rules.rule import Hit
+from rosimpact.impact.rules.rule import Diagnostic
 from rosimpact.impact.rules.severity import Doubt
-from rosimpact.impact.targets.availability import Horizon
+from rosimpact.impact.rules.upcoming import Upcoming, rate_upcoming
 from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.symbol import Horizon
 
 TARGET = DistroTarget("jazzy")
 SYNC, UPDATE = Horizon(TARGET, "the next sync of jazzy", soon=True), Horizon(TARGET, "jazzy of 2026-08-22")
@@ -13,11 +13,11 @@ NEWEST, FAR = Horizon(TARGET, "lyrical", platform=True), Horizon(TARGET, "lyrica
 
 
 def one(line, changed="opencv", horizon=NEWEST, doubts=(), order=()):
-    return Upcoming(Hit(At("a.cpp", line), f"x{line}", "gone"), changed, horizon, doubts, order or (line,))
+    return Upcoming(Diagnostic(At("a.cpp", line), f"x{line}", doubts=doubts), changed, horizon, order or (line,))
 
 
 def severities(*upcoming):
-    return [hit.severity for hit in rated(upcoming)]
+    return [one.severity for one in rate_upcoming(upcoming)]
 
 
 def test_the_first_of_a_kind_is_a_warning():
@@ -40,5 +40,5 @@ def test_the_next_sync_counts_as_now_and_a_far_distro_as_a_note():
 
 
 def test_findings_with_a_severity_keep_it():
-    plain = Hit(At("a.cpp", 1), "x", "gone", severity="error")
-    assert [hit.severity for hit in rated_all((plain, one(2)))] == ["error", "warning"]
+    plain = Diagnostic(At("a.cpp", 1), "x", severity="error")
+    assert [one.severity for one in rate_upcoming((plain, one(2)))] == ["error", "warning"]

@@ -101,7 +101,7 @@ ROWS = {
         "humble",
         ament("sled", VENDOR, "build_depend:git"),
         ("sled/package.xml", "<build_depend>git</build_depend>", ""),
-        ("warning", "git"),
+        ("error", "git"),
     ),
     "a program that a find module of CMake looks for": Row(
         "undeclared-package",
@@ -137,7 +137,7 @@ ROWS = {
         "melodic",
         catkin("sled", "", "catkin_package()", "exec_depend:roscpp"),
         ("sled/package.xml", "<buildtool_depend>catkin</buildtool_depend>", ""),
-        ("warning", "catkin"),
+        ("error", "catkin"),
     ),
     "a header of the package itself with a letter too many": Row(
         "removed-header",
@@ -148,7 +148,7 @@ ROWS = {
             run_cpp='#include "sled/dogharness.hpp"\n' + MAIN,
         ),
         ("sled/run.cpp", "sled/dogharness.hpp", "dogharnness.hpp"),
-        ("warning", "dogharnness.hpp"),
+        ("error", "dogharnness.hpp"),
     ),
     "an interface that no version has": Row(
         "removed-header",
@@ -180,7 +180,7 @@ ROWS = {
             "libboost-thread-dev", "libboost-filesystem-dev",
         ),
         ("sled/package.xml", "<depend>libboost-filesystem-dev</depend>", ""),
-        ("warning", "libboost-filesystem-dev"),
+        ("error", "libboost-filesystem-dev"),
     ),
     "a node started under an argument that is off": Row(
         "undeclared-package",

@@ -20,7 +20,7 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
         ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
         ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "unknown", "", ""),
         ("jazzy", Symbol("header", "octomap_msgs/conversions.h", ("octomap_msgs",)), "unknown", "", ""),
-        ("jazzy", Symbol("package", "nav2_recoveries"), "removed", "", "nav2_behaviors"),
+        ("jazzy", Symbol("package", "nav2_recoveries"), "removed", "humble", "nav2_behaviors"),
         ("jazzy", Symbol("package", "rclcpp"), "present", "", ""),
         ("jazzy", Symbol("package", "no_such_package_at_all"), "unknown", "", ""),
         # CMake minds no case in names of commands: `macro(MOVEIT_PACKAGE)` defines moveit_package.

@@ -4,14 +4,12 @@ import re
 
 import pytest
 from rosimpact.impact.facts.usage import places_of_use
-from rosimpact.impact.targets.behaviour import all_behaviour
-from rosimpact.impact.targets.changes import DISTROS
+from rosimpact.impact.targets.changes import DISTROS, all_uses, behaves_differently
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.distro.known import releases
-from rosimpact.impact.targets.uses import all_uses
 from rosimpact.impact.targets.version import at_least
 
-ROWS = all_behaviour()
+ROWS = all_uses("behaviour")
 
 # label: a use that is found, and one like it that is not
 EXAMPLES = {
@@ -120,30 +118,31 @@ def test_examples(label):
 def test_each_row_says_who_says_so_and_what_is_other_now(label):
     row = ROWS[label]
     assert re.match(r"https://[\w./#-]+\Z", row.source)
-    assert row.clause and not row.clause.endswith(".") and len(row.clause) < 140
-    assert (row.pattern.language == "python") == bool(row.imports)
-    assert label not in {use.label for use in all_uses()}
+    assert row.pattern.clause and not row.pattern.clause.endswith(".") and len(row.pattern.clause) < 140
+    assert (row.pattern.language == "python") == bool(row.pattern.imports)
+    assert label not in all_uses()
 
 
 @pytest.mark.parametrize("label", [label for label, row in ROWS.items() if not row.library])
 def test_versions_of_ros_packages_lie_between_released_ones(label):
     row = ROWS[label]
     versions = [version for _, version in releases(row.package)]
-    assert row.since in DISTROS or {at_least(version, row.since) for version in versions} == {True, False}
+    assert row.removed_in in DISTROS or {at_least(version, row.removed_in) for version in versions} == {True, False}
 
 
 def test_a_target_has_it_or_not_or_has_not_the_package():
     row = ROWS["cv::minAreaRect(points)"]
     targets = [DistroTarget("noetic"), DistroTarget("humble"), DistroTarget("humble", versions={"opencv": ""})]
-    assert [row.holds(target) for target in targets] == [False, True, None]
+    assert [behaves_differently(row, target) for target in targets] == [False, True, None]
 
 
 def test_a_distro_as_bound_says_nothing_of_the_other_generation():
     row = ROWS["sendTransform(...)"]
-    assert [row.holds(DistroTarget(name)) for name in ("melodic", "noetic", "jazzy")] == [False, True, None]
+    targets = map(DistroTarget, ("melodic", "noetic", "jazzy"))
+    assert [behaves_differently(row, target) for target in targets] == [False, True, None]
 
 
 def test_what_became_as_it_was_before_holds_in_between():
     row = ROWS["cv::minAreaRect(points)"]
     targets = [DistroTarget("jazzy", versions={"opencv": version}) for version in ("4.5", "4.5.1", "4.12", "4.13")]
-    assert [row.holds(target) for target in targets] == [False, True, True, False]
+    assert [behaves_differently(row, target) for target in targets] == [False, True, True, False]

@@ -7,13 +7,12 @@ import tarfile
 
 import pytest
 from rosimpact.databuild import debian
-from rosimpact.impact.targets.changes import all_rows, changes_in_force
+from rosimpact.impact.targets.changes import all_rows, all_uses, changes_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.evidence import evidence_of, holds_on
 from rosimpact.impact.targets.providers.providers import default_providers
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.target import Change
-from rosimpact.impact.targets.uses import all_uses
 from rosimpact.impact.targets.version import at_least, parts
 
 OLD = """#pragma once
@@ -190,7 +189,7 @@ def test_the_version_of_the_library_itself(version, expected):
 
 def test_shipped_rows_name_the_interval_and_a_library_whose_version_platforms_tell():
     platforms = (DATA / "platform_versions.yaml").read_text()
-    derived = [row for row in (*all_rows(), *all_uses()) if row.last_in]
+    derived = [row for row in (*all_rows(), *all_uses().values()) if row.last_in]
     assert len(derived) > 300
     for row in derived:
         assert row.library and parts(row.last_in) < parts(row.removed_in) and at_least(row.removed_in, row.last_in)
@@ -218,8 +217,8 @@ def test_the_evidence_gives_the_interval():
     [("noetic", False), ("humble", None), ("jazzy", True)],
 )
 def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected):
-    use = next(use for use in all_uses() if use.label == "cv::aruco::detectMarkers with 8 arguments")
-    change = Change(use.kind, use.package, use.label, "", "removed", "4.6.0", "", use.source, True)
+    use = all_uses()["cv::aruco::detectMarkers with 8 arguments"]
+    change = Change(use.kind, use.package, use.old, "", "removed", "4.6.0", "", use.source, True)
     assert holds_on(evidence_of(change), DistroTarget(distro), default_providers()) is expected
 
 

@@ -147,15 +147,6 @@ def test_library(text, library, version):
     assert target(text).library(library) == version
 
 
-def test_a_library_cell_names_its_source():
-    assert "Ubuntu archive" in target("humble").library_source("opencv")
-    assert target("humble").library_source("no_such_library") == ""
-
-
-def test_library_since_gives_the_oldest_platform_with_that_version():
-    assert target("jazzy").library_since("eigen3") == ("ubuntu jammy", "3.4.0")
-
-
 RESOLVED = [
     # target, platform, key, packages or None
     ("jazzy", None, "python3-transforms3d", ("python3-transforms3d",)),
@@ -173,20 +164,6 @@ RESOLVED = [
 def test_resolve(text, platform, key, packages):
     found = target(text, platform=platform).resolve(key)
     assert (found and found.packages) == packages
-
-
-@pytest.mark.parametrize(
-    ("name", "standing"),
-    [
-        ("rclcpp", "released"),
-        ("libopencv-dev", "key"),
-        ("roscpp", "known-elsewhere"),
-        ("python-numpy", "known-elsewhere"),
-        ("my_private_robot", "unknown"),
-    ],
-)
-def test_how_a_declared_name_stands(name, standing):
-    assert target("jazzy").declared_ok(name) == standing
 
 
 def test_keys_of_a_debian_package():
@@ -273,6 +250,14 @@ def test_what_a_package_may_bring_in_any_distro():
     assert jazzy.possible_dependencies("no_such_package") == jazzy.possible_dependencies("eigen") == frozenset()
     # what only builds it does not come along
     assert "message_generation" not in target("noetic").possible_dependencies("std_msgs")
+
+
+def test_what_the_next_known_manifest_brings_where_this_version_has_none():
+    rolling = target("rolling@2022-12-12")
+    assert "diagnostic_updater" not in {d.name for d in rolling.dependencies("controller_manager")}
+    assert "diagnostic_updater" in rolling.later_dependencies("controller_manager")
+    assert target("rolling").later_dependencies("controller_manager") == frozenset()  # its own is known
+    assert rolling.later_dependencies("no_such_package") == rolling.later_dependencies("eigen") == frozenset()
 
 
 def test_packages_of_the_other_ros():

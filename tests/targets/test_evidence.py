@@ -9,7 +9,6 @@ from rosimpact.impact.targets.evidence import Evidence, evidence_of, from_surfac
 from rosimpact.impact.targets.providers.providers import default_providers
 from rosimpact.impact.targets.surface.changes import Event, Line, Told
 from rosimpact.impact.targets.surface.offers import Offered
-from rosimpact.impact.targets.uses import uses_in_force
 from rosimpact.impact.targets.version import at_least
 
 
@@ -83,7 +82,8 @@ def test_a_version_that_was_given_has_no_day():
 
 def test_a_use_has_its_label_and_bound():
     rolling = DistroTarget("rolling")
-    use = next(c for c in uses_in_force(rolling) if c.package == "message_filters" and c.state == "removed")
+    known = [c for c in changes_in_force(rolling) if c.kind == "call-changed"]
+    use = next(c for c in known if c.package == "message_filters" and c.state == "removed")
     found = evidence_of(use)
     assert (found.change, found.name, found.first[:1].isdigit()) == ("removed", use.old, True)
 

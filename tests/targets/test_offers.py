@@ -4,12 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.python.surface import extract as module
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
-from rosimpact.impact.targets.surface.offers_cpp import judged
-from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.offers_cpp import availability_of_use
+from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
     Header,
@@ -198,9 +199,10 @@ def test_a_method_that_moved_to_a_base_is_judged_as_the_base_has_it(store):
     surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate((inherited, own, inherited), 1)))
 
     def override(version):
-        return judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::tick", "override", 0, ("const",))
+        offers = Offers(target(arm=version), surfaces)
+        return availability_of_use(offers, "arm", "arm::Arm::tick", "override", 0, ("const",))
 
-    assert override("2.0.0").kind == "override"
+    assert override("2.0.0").form == "override"
     assert override("3.0.0") is None
 
 
@@ -212,11 +214,11 @@ def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
     surfaces = store(*(surface("arm", f"{n}.0.0", f"namespace arm {{ {code} }}") for n, code in enumerate(codes, 1)))
 
     def call(version):
-        return judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::move", "call", 1, ())
+        return availability_of_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::move", "call", 1, ())
 
-    assert (call("2.0.0").kind, call("2.0.0").offered.name) == ("arguments", "arm::Arm::move")
+    assert (call("2.0.0").form, call("2.0.0").symbol.name) == ("arguments", "arm::Arm::move")
     assert call("4.0.0") is None
-    assert (call("5.0.0").kind, call("5.0.0").offered.name) == ("arguments", "arm::Part::move")
+    assert (call("5.0.0").form, call("5.0.0").symbol.name) == ("arguments", "arm::Part::move")
 
 
 @pytest.mark.parametrize(
@@ -250,7 +252,7 @@ def test_what_is_made_of_a_use(codes, how, arguments, given, kinds, store):
     code = "namespace arm {{ class Arm {{ public: {} }}; }}"
     surfaces = store(*(surface("arm", f"{n}.0.0", code.format(each)) for n, each in enumerate(codes, 1)))
     found = (
-        judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::stop", how, arguments, given)
+        availability_of_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::stop", how, arguments, given)
         for version in ("1.0.0", "2.0.0")
     )
-    assert tuple(one.kind if one is not None else None for one in found) == kinds
+    assert tuple(one.form if one is not None else None for one in found) == kinds

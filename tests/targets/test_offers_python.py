@@ -4,12 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.python.surface import extract
 from rosimpact.impact.facts.python.uses import Given, PythonUse
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
-from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, Module, PythonSurface, Surface
 
 
@@ -39,23 +40,24 @@ def use(name, how="name", positional=0, keywords=(), parameters=""):
 
 
 def test_a_name_that_went_is_told_with_the_versions_around(offers):
-    lost = offers("3.0.0", "def f(): pass", "def f(): pass", "").lost(use("arm.f"), ["arm"])
-    assert (lost.state, lost.name, lost.last, lost.first, lost.sure) == ("removed", "arm.f", "2.0.0", "3.0.0", True)
+    lost = offers("3.0.0", "def f(): pass", "def f(): pass", "").ask(use("arm.f"), ["arm"])
+    assert (lost.state, lost.symbol.name, lost.since, lost.sure) == ("removed", "arm.f", "3.0.0", True)
+    assert (lost.evidence.last, lost.evidence.first) == ("2.0.0", "3.0.0")
 
 
 def test_a_name_that_comes_later_is_not_there_yet(offers):
-    lost = offers("1.0.0", "", "", "def f(): pass").lost(use("arm.f"), ["arm"])
-    assert (lost.state, lost.first) == ("absent", "3.0.0")
+    lost = offers("1.0.0", "", "", "def f(): pass").ask(use("arm.f"), ["arm"])
+    assert (lost.state, lost.since) == ("not yet", "3.0.0")
 
 
 def test_what_an_older_distro_got_and_this_one_not_yet_is_not_called_gone(offers):
-    lost = offers("2.0.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"])
-    assert (lost.state, lost.first) == ("absent", "3.0.0")
+    lost = offers("2.0.0", "def f(): pass", "", "def f(): pass").ask(use("arm.f"), ["arm"])
+    assert (lost.state, lost.since) == ("not yet", "3.0.0")
 
 
 @pytest.mark.parametrize("name", ["arm.always", "arm.never", "other.f"])
 def test_what_never_changed_or_never_was_is_not_spoken_of(offers, name):
-    assert offers("2.0.0", "always = 1\ndef f(): pass", "always = 1").lost(use(name), ["arm"]) is None
+    assert offers("2.0.0", "always = 1\ndef f(): pass", "always = 1").ask(use(name), ["arm"]) is None
 
 
 @pytest.mark.parametrize(
@@ -71,22 +73,22 @@ def test_what_never_changed_or_never_was_is_not_spoken_of(offers, name):
 )
 def test_an_import_of_what_no_version_has(offers, name, told):
     modules = {"arm": "def f(): pass", "arm.tool": "", "arm.open": "from elsewhere import *"}
-    lost = offers("2.0.0", modules, {**modules, "arm": ""}).lost(use(name, "from"), ["arm"])
-    assert (lost is not None and lost.state == "unknown") == told
+    lost = offers("2.0.0", modules, {**modules, "arm": ""}).ask(use(name, "from"), ["arm"])
+    assert (lost is not None and lost.form == "never") == told
 
 
 def test_a_lost_module_is_told_for_what_lies_in_it(offers):
     known = offers("2.0.0", {"arm": "", "arm.old": "class C:\n  def m(self): pass"}, {"arm": ""})
-    assert known.lost(use("arm.old.C.m", "member"), ["arm"]).name == "arm.old"
+    assert known.ask(use("arm.old.C.m", "member"), ["arm"]).symbol.name == "arm.old"
 
 
 def test_a_member_is_found_by_any_path_to_its_class(offers):
     before = {"arm": "from arm.node import Node", "arm.node": "class Node:\n  def m(self): pass\n  def n(self): pass"}
     after = {"arm": "from arm.node import Node", "arm.node": "class Node:\n  def n(self): pass"}
     known = offers("2.0.0", before, after)
-    assert known.lost(use("arm.node.Node.m", "method"), ["arm"]).name == "arm.node.Node.m"
-    assert known.lost(use("arm.Node.m", "method"), ["arm"]).name == "arm.Node.m"
-    assert known.lost(use("arm.Node.n", "method"), ["arm"]) is None
+    assert known.ask(use("arm.node.Node.m", "method"), ["arm"]).symbol.name == "arm.node.Node.m"
+    assert known.ask(use("arm.Node.m", "method"), ["arm"]).symbol.name == "arm.Node.m"
+    assert known.ask(use("arm.Node.n", "method"), ["arm"]) is None
 
 
 @pytest.mark.parametrize(
@@ -99,66 +101,67 @@ def test_a_member_is_found_by_any_path_to_its_class(offers):
     ],
 )
 def test_what_may_be_there_is_not_called_gone(offers, module):
-    assert offers("2.0.0", "class C:\n  def m(self): pass", module).lost(use("arm.C.m", "method"), ["arm"]) is None
+    assert offers("2.0.0", "class C:\n  def m(self): pass", module).ask(use("arm.C.m", "method"), ["arm"]) is None
 
 
 @pytest.mark.parametrize(
     ("how", "positional", "keywords", "state"),
     [
-        ("call", 2, (), "refused"),
-        ("call", 1, ("speed",), "refused"),
+        ("call", 2, (), ("changed", "call", True)),
+        ("call", 1, ("speed",), ("changed", "call", True)),
         ("call", 0, (), None),  # no version takes it
-        ("call", 1, ("force",), "early"),
+        ("call", 1, ("force",), ("changed", "call", False)),
         ("call", 1, (), None),
         ("name", 0, (), None),
     ],
 )
 def test_calls_are_measured_by_the_parameters(offers, how, positional, keywords, state):
     known = offers("2.0.0", "def f(a, speed=0): pass", "def f(a): pass", "def f(a, *, force=0): pass")
-    lost = known.lost(use("arm.f", how, positional, keywords), ["arm"])
-    assert (lost and lost.state) == state
+    lost = known.ask(use("arm.f", how, positional, keywords), ["arm"])
+    assert (lost and (lost.state, lost.form, lost.earlier)) == state
 
 
 def test_a_class_is_called_as_its_constructor(offers):
     old, new = "class C:\n  def __init__(self, a): pass", "class C:\n  def __init__(self, a, b): pass"
-    lost = offers("2.0.0", old, new).lost(use("arm.C", "call", 1), ["arm"])
-    assert (lost.state, lost.why, lost.old, lost.new) == ("refused", "`b` must be given", "arm.C(a)", "arm.C(a, b)")
+    lost = offers("2.0.0", old, new).ask(use("arm.C", "call", 1), ["arm"])
+    assert (lost.form, lost.detail) == ("call", "`b` must be given")
+    assert (lost.evidence.old, lost.evidence.new) == (("arm.C(a)",), ("arm.C(a, b)",))
 
 
 def test_a_method_called_by_its_class_is_left_alone(offers):
     known = offers("2.0.0", "class C:\n  def m(self, a): pass", "class C:\n  def m(self): pass")
-    assert known.lost(use("arm.C.m", "call", 2), ["arm"]) is None
-    assert known.lost(use("arm.C.m", "method", 1), ["arm"]).state == "refused"
+    assert known.ask(use("arm.C.m", "call", 2), ["arm"]) is None
+    assert known.ask(use("arm.C.m", "method", 1), ["arm"]).form == "call"
 
 
 def test_a_decorator_that_is_not_known_may_change_the_parameters(offers):
     old, new = "@wrapped\ndef f(a): pass", "@wrapped\ndef f(a, b): pass"
-    assert offers("2.0.0", old, new).lost(use("arm.f", "call", 1), ["arm"]) is None
+    assert offers("2.0.0", old, new).ask(use("arm.f", "call", 1), ["arm"]) is None
 
 
 def test_an_override_is_measured_by_what_the_base_class_is_called_with(offers):
     known = offers("2.0.0", "class C:\n  def m(self, a): pass", "class C:\n  def m(self, a, b): pass")
-    assert known.lost(use("arm.C.m", "override", parameters="(a)"), ["arm"]).why == "`b` is given to it and not taken"
-    assert known.lost(use("arm.C.m", "override", parameters="(a, b)"), ["arm"]) is None
-    assert known.lost(use("arm.C.m", "override", parameters="(*args)"), ["arm"]) is None
+    assert known.ask(use("arm.C.m", "override", parameters="(a)"), ["arm"]).detail == "`b` is given to it and not taken"
+    assert known.ask(use("arm.C.m", "override", parameters="(a, b)"), ["arm"]) is None
+    assert known.ask(use("arm.C.m", "override", parameters="(*args)"), ["arm"]) is None
 
 
 def test_a_deprecation_is_told_with_its_message(offers):
     module = "from typing_extensions import deprecated\n@deprecated('use g')\ndef f(): pass"
-    lost = offers("2.0.0", "def f(): pass", module).lost(use("arm.f", "call"), ["arm"])
-    assert (lost.state, lost.why) == ("deprecated", "use g")
+    lost = offers("2.0.0", "def f(): pass", module).ask(use("arm.f", "call"), ["arm"])
+    assert (lost.state, lost.detail) == ("deprecated", "use g")
 
 
 def test_what_a_branch_stands_for_is_not_spoken_of(offers):
-    assert offers("2.0.0", "def f(): pass", "", approximate=["2.0.0"]).lost(use("arm.f"), ["arm"]) is None
-    assert offers("2.0.0", "def f(): pass", "", approximate=["1.0.0"]).lost(use("arm.f"), ["arm"]) is None
-    lost = offers("3.0.0", "def f(): pass", "", "", approximate=["2.0.0"]).lost(use("arm.f"), ["arm"])
-    assert (lost.last, lost.first) == ("1.0.0", "3.0.0")
+    assert offers("2.0.0", "def f(): pass", "", approximate=["2.0.0"]).ask(use("arm.f"), ["arm"]) is None
+    assert offers("2.0.0", "def f(): pass", "", approximate=["1.0.0"]).ask(use("arm.f"), ["arm"]) is None
+    lost = offers("3.0.0", "def f(): pass", "", "", approximate=["2.0.0"]).ask(use("arm.f"), ["arm"])
+    assert (lost.evidence.last, lost.evidence.first) == ("1.0.0", "3.0.0")
 
 
 def test_between_two_stored_versions_only_what_both_say_is_told(offers):
-    assert offers("2.5.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"]) is None
-    assert offers("2.5.0", "def f(): pass", "", "").lost(use("arm.f"), ["arm"]).state == "removed"
+    assert offers("2.5.0", "def f(): pass", "", "def f(): pass").ask(use("arm.f"), ["arm"]) is None
+    assert offers("2.5.0", "def f(): pass", "", "").ask(use("arm.f"), ["arm"]).state == "removed"
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,15 @@
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table
 from rosimpact.impact.targets.surface.compare import State
-from rosimpact.impact.targets.surface.includes import Including, compiled, unpack
-from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.includes import compiled, unpack
+from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 

@@ -4,13 +4,14 @@ import msgspec
 import pytest
 import zstandard
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.python.surface import extract as module
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.targets.surface.includes import compiled
-from rosimpact.impact.targets.surface.store import History, StoredSurfacesError, Surfaces, write
+from rosimpact.impact.targets.surface.store import History, StoredSurfacesError, Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,

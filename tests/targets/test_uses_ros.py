@@ -3,20 +3,19 @@
 # ruff: noqa: E501
 import json
 import re
-from pathlib import Path
 
 import pytest
 from rosimpact.impact.facts.usage import places_of_use
-from rosimpact.impact.targets import uses
-from rosimpact.impact.targets.changes import DISTROS
+from rosimpact.impact.targets.changes import DISTROS, all_uses
+from rosimpact.impact.targets.snapshot import DATA
 
 BOUND = re.compile(r"\d+(\.\d+)+\Z")
 OURS = {
     label
-    for group in json.loads((Path(uses.__file__).parent / "data" / "uses_ros.json").read_bytes())["uses"]
+    for group in json.loads((DATA / "uses_ros.json").read_bytes())["uses"]
     for label in group["uses"]
 }
-ROWS = {row.label: row for row in uses.all_uses() if row.label in OURS}
+ROWS = {label: row for label, row in all_uses().items() if label in OURS}
 
 # label: code that looks so, and code that does not. A label without an example is code itself.
 EXAMPLES = {

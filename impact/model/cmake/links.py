@@ -39,6 +39,27 @@ def may_hide(item: str, name: str) -> bool:
     return ("::" in plain[-1] and not after) or name.lower().endswith(after)
 
 
+def linked_items(package: Package, target: str) -> set[str] | None:
+    """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
+    targets = {one.name: one for one in package.build.targets}
+    items = {link.item for link in package.build.links}
+    seen: set[str] = set()
+    waiting = [target, *items]
+    while waiting:
+        own = targets.get(waiting.pop())
+        if own is None or own.name in seen:
+            continue
+        if own.kind in ("unknown", "external", "fetched", "imported"):
+            return None
+        seen.add(own.name)
+        waiting.extend([own.alias_of] if own.alias_of else [])
+        for link in own.links:
+            if link.how in ("link", "ament"):
+                items.add(link.item)
+                waiting.append(link.item)
+    return items
+
+
 def exported_targets(package: Package) -> Iterator[BuildTarget]:
     """The libraries of the package that dependants link as imported targets, through ament_export_targets()."""
     sets = {e.item for e in package.build.exports if e.how == "ament_export_targets"}

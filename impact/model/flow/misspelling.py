@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Generic, TypeVar
 
+from ..misspelling import one_edit
+
 T = TypeVar("T")
 
 # Shorter words of one letter's difference are other words.
@@ -35,29 +37,22 @@ def _is_slip(one: str, other: str) -> bool:
         return True
     if min(len(one), len(other)) < _SHORTEST or any(one.replace(x, y) == other for x, y in (*_SIDES, *_turned())):
         return False
-    if len(one) == len(other):
-        wrong = [place for place, (x, y) in enumerate(zip(one, other, strict=True)) if x != y]
-        if len(wrong) == 1:
-            return not _tells(one, other, wrong[0])
-        first = wrong[0]
-        return len(wrong) == 2 and wrong[1] == first + 1 and one[first : first + 2] == other[first : first + 2][::-1]
-    short, long = sorted((one, other), key=len)
-    if len(long) - len(short) != 1:
+    if not one_edit(one, other):
         return False
+    short, long = sorted((one, other), key=len)
     place = next((i for i, (x, y) in enumerate(zip(short, long, strict=False)) if x != y), len(short))
-    return short[place:] == long[place + 1 :] and not _alone(long, place)
+    if len(short) < len(long):
+        return not _alone(long, place)
+    is_swap = one[place + 1 :] != other[place + 1 :]
+    return is_swap or not (_alone(one, place) and _alone(other, place))
 
 
 def _turned():
     return ((y, x) for x, y in _SIDES)
 
 
-def _tells(one: str, other: str, place: int) -> bool:
-    """Whether a letter that differs stands alone, as in `arm_l` and `arm_r`, or ends the name, as in `pose_x`."""
-    return _alone(one, place) and _alone(other, place)
-
-
 def _alone(name: str, place: int) -> bool:
+    """Whether a letter stands alone, as in `arm_l` and `arm_r`, or ends the name, as in `pose_x`."""
     before = place == 0 or not name[place - 1].isalpha()
     after = place == len(name) - 1 or not name[place + 1].isalpha()
     return before and after

@@ -1,4 +1,4 @@
-"""changed-behaviour: a call that is written rightly does something else on a target.
+"""changed-behaviour: a call compiles everywhere and behaves differently on a target.
 
 What it does
     Reports the first use in each package, in C++, Python or a file of parameters, of what, as the reviewed table of
@@ -28,69 +28,69 @@ from collections.abc import Iterator, Sequence
 from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.behaviour import Behaviour, all_behaviour
+from ...targets.changes import Row, all_uses, behaves_differently
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.evidence import Evidence
-from ..rule import Hit, rule
-from .build_api import of_another_distro
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .diagnosis import is_of_another_distro
 
 
-@rule(scope="targets", severity="note")
-def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
+@rule(
+    scope="targets",
+    severity="note",
+    texts=Text("`{subject}` behaves differently since {since}: {clause}", "[[{advice}]]"),
+)
+def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Diagnostic]]:
     if not views:
         return
-    table = all_behaviour()
+    table = all_uses("behaviour")
     workspace = views[0].workspace
     own = {function for package in workspace for function in package.digest.functions}
     before = _before(views[0]) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
-        told: set[tuple[str, str]] = set()
+        seen: set[tuple[str, str]] = set()
         for use in package.digest.uses:
             row = table.get(use.text)
-            if row is None or use.role not in ("build", "run") or (row.clause, row.package) in told:
+            if row is None or row.pattern is None or use.role not in ("build", "run"):
+                continue
+            if (row.pattern.clause, row.package) in seen:
                 continue
             if row.package in workspace.packages or (row.pattern.calls and row.pattern.word in own):
                 continue
-            if row.label not in fresh:
-                fresh[row.label] = before is not None and row.holds(before) is False
-            holding = [view for view in views if row.holds(view.target)]
-            if not holding or (len(holding) == len(views) and not fresh[row.label]):
+            if row.old not in fresh:
+                fresh[row.old] = before is not None and behaves_differently(row, before) is False
+            holding = [view for view in views if behaves_differently(row, view.target)]
+            if not holding or (len(holding) == len(views) and not fresh[row.old]):
                 continue  # known before it is asked what the use is of, which is dear
             asked = [view for view in views if _counts(view, package, use, row)]
             with_it = [view for view in asked if view in holding]
-            if not with_it or (len(with_it) == len(asked) and not fresh[row.label]):
+            if not with_it or (len(with_it) == len(asked) and not fresh[row.old]):
                 continue
-            told.add((row.clause, row.package))
+            seen.add((row.pattern.clause, row.package))
+            shown = use.shown or use.text
+            data = {"since": f"{row.package} {row.removed_in}" if row.removed_in[0].isdigit() else row.removed_in}
+            data |= {"clause": row.pattern.clause, "advice": row.new}
+            evidence = Evidence(
+                row.package, "changed", row.old, first=row.removed_in, library=row.library, source=row.source
+            )
             for view in with_it:
-                since = f"{row.package} {row.since}" if row.since[0].isdigit() else row.since
-                yield (
-                    view,
-                    Hit(
-                        use.at,
-                        use.shown or use.text,
-                        f"`{use.shown or use.text}` does otherwise since {since}: {row.clause}",
-                        row.help,
-                        package.name,
-                        evidence=Evidence(
-                            row.package, "changed", row.label, first=row.since, library=row.library, source=row.source
-                        ),
-                    ),
-                )
+                yield view, Diagnostic(use.at, shown, package.name, data, evidence=evidence)
 
 
-def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
+def _counts(view: View, package: Package, use: NameUse, row: Row) -> bool:
     """Whether a use is compiled or run on a target that has the package in some version."""
     if package.build_type.startswith("ament") and view.target.ros == 1:
         return False
     if package.build_type == "catkin" and view.target.ros == 2:
         return False
-    if row.holds(view.target) is None or not view.active(use.conditions):
+    if behaves_differently(row, view.target) is None or not view.active(use.conditions):
         return False
-    if use.language == "yaml" and of_another_distro(view, use.at.path, package.digest.files):
+    if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
         return False
-    return view.concerned(package, row.change, use.at.path)
+    return view.concerned(package, row, use.at.path)
 
 
 def _before(view: View) -> DistroTarget | None:

@@ -1,4 +1,4 @@
-"""changed-default: a call leaves out an argument whose default another version has otherwise.
+"""changed-default: a call leaves out an argument whose default differs between versions.
 
 What it does
     Reports calls of C++ functions of other packages that rely on a default argument which changed, after the long-term
@@ -26,41 +26,41 @@ from functools import cache
 from ...model.view import View
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
-from ...targets.evidence import of_offered
-from ...targets.surface.offers import Offered
 from ...targets.surface.offers_cpp import defaults_changed
+from ...targets.symbol import Availability
 from ...targets.target import Target
 from ...targets.version import at_least
-from ..rule import Hit, rule
-from .cpp_api import uses_judged
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .uses import list_cpp_uses
 
 
-@rule(severity="note")
+@rule(
+    scope="target",
+    severity="note",
+    texts=Text(
+        "the default argument of `{subject}` changed from `{old}` to `{new}` in {upstream} {since}",
+        help="give the argument where it matters",
+    ),
+)
 def changed_default(view: View):
     for package in view:
-        for use, found in uses_judged(view, package):
-            offered = found.offered
-            if found.kind != "default" or not use.sure or not _came_lately(view.target, offered):
+        for use in list_cpp_uses(view, package):
+            found = use.found
+            if found.form != "default" or not use.sure or not _came_lately(view.target, found):
                 continue
             values = defaults_changed(view.offers, found, use.arguments)
             if values is None:
                 continue
-            yield Hit(
-                use.at,
-                use.name,
-                f"`{use.name}` takes `{values[1]}` for an argument that is left out, and took `{values[0]}` before "
-                f"{offered.package} {offered.first}",
-                "give the argument where it matters",
-                package.name,
-                evidence=of_offered(offered),
-            )
+            data = {"old": values[0], "new": values[1], "upstream": found.package, "since": found.since}
+            yield Diagnostic(use.at, use.name, package.name, data, evidence=found.evidence)
 
 
-def _came_lately(target: Target, offered: Offered) -> bool:
+def _came_lately(target: Target, found: Availability) -> bool:
     """Whether a change came after the long-term distro before the target's."""
     earlier = _long_term_before(target.distro)
-    version = DistroTarget(earlier).version(offered.package) if earlier else None
-    return version is None or not at_least(version, offered.first)
+    version = DistroTarget(earlier).version(found.package) if earlier else None
+    return version is None or not at_least(version, found.since)
 
 
 @cache

@@ -23,40 +23,49 @@ Not reported
     `try` that expects it or a test of the version; what the workspace itself provides.
 """
 
+from collections.abc import Iterator
+
 from ...model.view import View
-from ..rule import Hit, rule
-from ..severity import severity
-from .python_api import doubts_of, evidence_of, uses_coming, uses_lost
-from .upcoming import Upcoming, rated
+from ...model.workspace import Package
+from ..rule import Diagnostic, rule
+from ..text import Text
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import UPSTREAM, data_of, diagnose
+from .uses import list_python_uses
+
+_HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "call": Text(f"`{{subject}}` of {_HERE} no longer accepts this call: {{detail}}", "[[write {spelling}]]"),
+        "call early": Text(
+            f"`{{subject}}` of {_HERE} does not accept this call: {{detail}}[[ (accepted since {{since}})]]"
+        ),
+        "override": Text(
+            f"`{{subject}}`, which is overridden here, has another signature in {_HERE}: {{detail}}",
+            "the base class calls it as `{declaration}`",
+        ),
+    },
+)
 def changed_python_signature(view: View):
     # What parameters are called now, where a reviewed table knows: by `function.parameter`.
     renamed = {change.old: change.new.rpartition(".")[2] for change in view.changes("python-api") if change.new}
     for package in view:
-        uses = [(found, lost, None) for found, lost in uses_lost(view, package)] + uses_coming(view, package)
-        coming: list[Upcoming] = []
-        for found, lost, ahead in uses:
-            where = f"{lost.package} {lost.version}" + (f" ({ahead.name})" if ahead is not None else "")
-            given = found.use.given.keywords if found.use.given is not None else ()
-            cure = ""
-            if lost.state == "refused":
-                message = f"`{lost.name}` of {where} no longer accepts this call: {lost.why}"
-                names = [f"`{renamed[key]}` for `{one}`" for one in given if (key := f"{lost.name}.{one}") in renamed]
-                cure = f"write {' and '.join(names)}" if names else ""
-            elif lost.state == "early":
-                message = f"`{lost.name}` of {where} does not accept this call yet: {lost.why}"
-            elif lost.state == "override":
-                message = f"`{lost.name}`, overridden here, has changed in {where}: {lost.why}"
-                cure = f"it is called as `{lost.new}`"
-            else:
-                continue
-            doubts = doubts_of(view, found, lost)
-            hit = Hit(found.at, lost.name, message, cure, package.name, evidence=evidence_of(lost))
-            if ahead is None:
-                yield hit._replace(severity=severity(*doubts))
-            else:
-                order = found.at.path, found.at.line, found.at.column
-                coming.append(Upcoming(hit, lost.package, ahead, doubts, order))
-        yield from rated(coming)
+        yield from rate_upcoming(_list_changed(view, package, renamed))
+
+
+def _list_changed(view: View, package: Package, renamed: dict[str, str]) -> Iterator[Diagnostic | Upcoming]:
+    for use in list_python_uses(view, package):
+        found = use.found
+        if found.form not in ("call", "override"):
+            continue
+        evidence = found.evidence
+        data = {**data_of(found), "detail": found.detail}
+        data["declaration"] = evidence.new[0] if evidence is not None and evidence.new else ""
+        names = [f"`{renamed[key]}` for `{one}`" for one in use.keywords if (key := f"{use.name}.{one}") in renamed]
+        data["spelling"] = " and ".join(names)
+        kind = found.form if found.earlier else f"{found.form} early"
+        yield diagnose(found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)

@@ -1,4 +1,4 @@
-"""changed-signature: a call or a type is written as the target's version of a library does not take it.
+"""changed-signature: a call, a type or an override does not fit the target's version of a library.
 
 What it does
     Reports calls with arguments, template arguments, or in a form that the known-changes table says the target's
@@ -32,124 +32,116 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
-from ...model.package import CppApiUse, NameUse
+from ....edges.console import counted
+from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.evidence import evidence_of, of_offered
+from ...targets.availability import of_row
+from ...targets.changes import function_of, standards_of
 from ...targets.providers.library import default_standard, standard_year
-from ...targets.surface.offers_cpp import Judged
+from ...targets.symbol import Horizon, Symbol
 from ...targets.target import Change
-from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least
-from ..rule import Hit, rule
-from ..severity import Doubt, doubts_of_place, severity
-from .cpp_api import doubts_of, line_of, uses_coming, uses_judged, when
-from .upcoming import Upcoming, rated
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, doubts_of_place
+from ..text import Text
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import UPSTREAM, data_of, diagnose
+from .uses import UnservedUse, list_cpp_uses
 
 # What every C++ file is compiled with, whatever its package declares.
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
+_HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
+_LATER = f"{_HERE}[[ (added in {{since}})]]"
+_HELP = "[[use `{replacement}`]]"
+_LOST = {
+    "arguments": f"`{{subject}}` does not accept {{arguments}} in {_HERE}; an earlier version does",
+    "types": f"`{{subject}}` does not accept arguments of these types in {_HERE}; an earlier version does",
+    "template": f"the template argument of `{{subject}}` cannot be deduced from this call in {_HERE}",
+    "override": f"this method does not override `{{subject}}` in {_HERE}: its signature changed",
+    "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
+}
+_EARLY = {
+    "arguments": f"`{{subject}}` does not accept {{arguments}} in {_LATER}",
+    "types": f"`{{subject}}` does not accept arguments of these types in {_LATER}",
+    "override": f"this method does not override `{{subject}}` in {_LATER}",
+    "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
+}
+_ACCEPTED = "accepted by {upstream}[[ {version}]][[ in {standard}]][[ ({horizon})]]"
 
-_KINDS = frozenset({"arguments", "types", "template", "override", "pure"})
 
-
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        **{form: Text(text, _HELP) for form, text in _LOST.items()},
+        **{f"{form} early": Text(text, _HELP) for form, text in _EARLY.items()},
+        "reviewed": Text(f"`{{subject}}` is no longer {_ACCEPTED}", "{advice}"),
+        "reviewed early": Text(f"`{{subject}}` is not {_ACCEPTED}[[; it was added in {{since}}]]", "{advice}"),
+    },
+)
 def changed_signature(view: View):
-    told = set()
-    for hit in _reviewed(view):
-        told.add(line_of(hit))
-        yield hit
+    seen = set()
+    for found in _list_reviewed(view):
+        seen.add((found.at.path, found.at.line))
+        yield found
     for package in view:
-        for use, found in uses_judged(view, package):
-            if found.kind not in _KINDS or (use.at.path, use.at.line) in told:
-                continue
-            yield Hit(
-                use.at,
-                use.name,
-                f"{_what(use, found)} in {found.offered.package} {found.offered.version}",
-                f"use `{found.offered.instead}`" if found.offered.instead else when(found),
-                package.name,
-                severity=severity(*doubts_of(view, use, found)),
-                evidence=of_offered(found.offered),
-            )
-        yield from rated(
-            Upcoming(
-                Hit(use.at, use.name, f"{_what(use, found)} in {found.offered.package} {found.offered.version} "
-                    f"({ahead.name})", when(found), package.name, evidence=of_offered(found.offered)),
-                found.offered.package, ahead, doubts_of(view, use, found), _place(use.at),
-            )
-            for use, found, ahead in uses_coming(view, package)
-            if found.kind != "removed" and (use.at.path, use.at.line) not in told
-        )  # fmt: skip
+        yield from rate_upcoming(
+            _diagnose_use(use, package)
+            for use in list_cpp_uses(view, package)
+            if use.found.form in _LOST and (use.at.path, use.at.line) not in seen
+        )
 
 
-def _what(use: CppApiUse, found: Judged) -> str:
-    """What is wrong with a use, as a clause without its place."""
-    time = "no longer" if found.earlier else "not yet"
-    if found.kind == "override":
-        return f"this {time} overrides `{use.name}`" if found.earlier else f"this does not yet override `{use.name}`"
-    if found.kind == "pure":
-        return f"this class does not implement `{use.name}`, which is pure virtual"
-    if found.kind == "template":
-        return f"`{use.name}` cannot deduce its template argument from this call"
-    if found.kind == "types":
-        return f"`{use.name}` {'no longer takes' if found.earlier else 'does not yet take'} such arguments"
-    many = "one argument" if use.arguments == 1 else f"{use.arguments or 'no'} arguments"
-    return f"`{use.name}` {'no longer takes' if found.earlier else 'does not yet take'} {many}"
+def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
+    data = {**data_of(use.found), "arguments": counted(use.arguments, "argument")}
+    kind = use.found.form if use.found.earlier else f"{use.found.form} early"
+    return diagnose(use.found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)
 
 
-def _reviewed(view: View) -> Iterator[Hit]:
-    """What the tables of known changes tell."""
-    # What the workspace itself brings is as it brings it, whatever a release did.
-    refused = {c.old: c for c in view.changes("call-changed") if c.package not in view.workspace.packages}
-    coming = {
+def _list_reviewed(view: View) -> Iterator[Diagnostic]:
+    """What the tables of known changes tell. What the workspace itself brings is as it brings it."""
+    refused: dict[str, tuple[Change, Horizon | None]] = {
         label: (change, ahead)
         for label, (change, ahead) in view.coming.items()
         if change.kind == "call-changed" and change.package not in _COMPILER
-        and change.package not in view.workspace.packages
-    }  # fmt: skip
-    if not refused and not coming:
-        return
-    for package in view:
-        # A method that the package or what it is built with declares may be meant wherever its name is called.
-        within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
-        own = {function for each in within for function in each.digest.functions}
-        soon: list[Upcoming] = []
-        for use in package.digest.uses:
-            if function_of(use.text) in own:
-                continue
-            change = refused.get(use.text)
-            ahead = None
-            if change is None:
-                change, ahead = coming.get(use.text, (None, None))
-            if (
-                change is None
-                or not view.active(use.conditions)
-                or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
-                or (ahead is not None and not view.active_on(ahead, use.conditions))
-            ):
-                continue
-            where = _under_standard(view, package, use, change)
-            if where is None:
-                continue
-            shown = use.shown or use.text
-            doubts = doubts_of_place(view, use.role, use.conditions)
-            if use.language != "cpp":
-                doubts = (*doubts, Doubt.LATE)
-            accepted = f"`{shown}` is {'no longer' if change.state == 'removed' else 'not yet'} accepted by"
-            message = f"{accepted} {change.package} {change.version}{where}"
-            hit = Hit(use.at, shown, message, change.new, package.name, evidence=evidence_of(change))
-            if ahead is None:
-                yield hit._replace(severity=severity(*doubts))
-                continue
-            hit = hit._replace(message=f"{message} ({ahead.name})")
-            soon.append(Upcoming(hit, change.package, ahead, doubts, _place(use.at)))
-        yield from rated(soon)
+    }
+    refused.update((change.old, (change, None)) for change in view.changes("call-changed"))
+    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.packages}
+    for package in view if refused else ():
+        yield from rate_upcoming(_list_reviewed_of(view, package, refused))
 
 
-def _place(at: At) -> tuple[str, int, int]:
-    return at.path, at.line, at.column
+def _list_reviewed_of(
+    view: View, package: Package, refused: dict[str, tuple[Change, Horizon | None]]
+) -> Iterator[Diagnostic | Upcoming]:
+    # A method that the package or what it is built with declares may be meant wherever its name is called.
+    within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
+    own = {function for each in within for function in each.digest.functions}
+    for use in package.digest.uses:
+        change, ahead = refused.get(use.text, (None, None))
+        if (
+            change is None
+            or function_of(use.text) in own
+            or not view.active(use.conditions)
+            or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
+            or (ahead is not None and not view.active_on(ahead, use.conditions))
+        ):
+            continue
+        standard = _failing_standard(view, package, use, change)
+        if standard is None:
+            continue
+        shown = use.shown or use.text
+        found = of_row(Symbol("c++", use.text), change)
+        found = found if ahead is None else found.on(ahead)
+        doubts = doubts_of_place(view, use.role, use.conditions)
+        doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
+        data = {**data_of(found), "standard": standard, "advice": change.new}
+        if standard:
+            data["since"] = ""  # the version is bound to the standard
+        kind = "reviewed" if found.earlier else "reviewed early"
+        yield diagnose(found, use.at, shown, package.name, doubts, kind=kind, data=data)
 
 
 def _raised_to(view: View) -> int:
@@ -162,8 +154,8 @@ def _raised_to(view: View) -> int:
     return 2020 if at_least(view.target.library("gcc") or "", "15") else 2017
 
 
-def _under_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:
-    """How a message names the C++ standard that a use fails under (empty: under any); None where it does not fail."""
+def _failing_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:
+    """The C++ standard that a use fails under (empty: under any); None where it does not fail."""
     refused_from, needs = standards_of(change.old)
     if not refused_from and not needs:
         return ""
@@ -178,9 +170,9 @@ def _under_standard(view: View, package: Package, use: NameUse, change: Change) 
     if not set_for and any(u.kind == "command" for u in build.uses):
         return None  # a macro of another package may set it
     if refused_from:
-        return f" in C++{have % 100:02d}" if have >= refused_from else None
+        return f"C++{have % 100:02d}" if have >= refused_from else None
     if max(have, _raised_to(view)) >= needs or not use.targets or use.role != "build":
         return None
     if not view.certain(use.conditions):
         return None
-    return f" in C++{have % 100:02d}"
+    return f"C++{have % 100:02d}"

@@ -24,66 +24,47 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.view import View
-from ...targets.evidence import evidence_of, of_offered
-from ..rule import Hit, rule
+from ...targets.availability import of_row
+from ...targets.symbol import Symbol
+from ..rule import Diagnostic, rule
 from ..severity import Doubt
-from .cpp_api import line_of, uses_judged
-from .python_api import evidence_of as told_by
-from .python_api import uses_lost
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import availability_texts, diagnose
+from .uses import list_cpp_uses, list_python_uses
 
 
-@rule(doubts=(Doubt.DEPRECATED,))
+@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts())
 def deprecated_name(view: View):
-    told = set()
-    for hit in _reviewed(view):
-        told.add(line_of(hit))
-        yield hit
+    yield from rate_upcoming(_list_deprecated(view))
+
+
+def _list_deprecated(view: View) -> Iterator[Diagnostic | Upcoming]:
+    seen = set()
     for package in view:
-        for use, found in uses_judged(view, package):
-            if found.kind != "deprecated" or not use.sure or (use.at.path, use.at.line) in told:
-                continue
-            offered = found.offered
-            goes = f", and gone in {offered.gone_in}" if offered.gone_in else ""
-            message = offered.here.deprecated if offered.here is not None else ""
-            yield Hit(
-                use.at,
-                use.name,
-                f"`{use.name}` is deprecated in {offered.package} {offered.version}{goes}",
-                f"use `{offered.instead}`" if offered.instead else f"its header says: {message}" if message else "",
-                package.name,
-                evidence=of_offered(offered),
-            )
-
-
-def _reviewed(view: View) -> Iterator[Hit]:
-    """What reviewed tables tell, and what Python files use."""
-    old = {
+        uses = list_python_uses(view, package)
+        named = set()
+        for use in uses:
+            if use.found.state == "deprecated" and (use.at.path, use.name) not in named:
+                named.add((use.at.path, use.name))
+                seen.add((use.at.path, use.at.line))
+                yield diagnose(use.found, use.at, use.name, package.name)
+    rows = {
         c.old: c
         for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
         if c.state == "deprecated" and c.old
     }
     for package in view:
-        told = set()
-        gone = tuple(f"{lost.name}." for _, lost in uses_lost(view, package) if lost.state == "removed")
-        for found, lost in uses_lost(view, package):
-            if lost.state == "deprecated" and (found.at.path, lost.name) not in told:
-                told.add((found.at.path, lost.name))
-                why = "" if lost.why == "deprecated" else lost.why
-                message = f"`{lost.name}` is deprecated in {lost.package} {lost.version}"
-                yield Hit(found.at, lost.name, message, why, package.name, evidence=told_by(lost))
-        uses = [(u.text, u.at, u.conditions) for u in package.digest.names]
-        uses += [(u.name, u.at, u.conditions) for u in package.build.uses]
-        for text, at, conditions in uses:
-            change = old.get(text)
+        gone = tuple(f"{use.name}." for use in list_python_uses(view, package) if use.found.state == "removed")
+        names = [(use.text, use.at, use.conditions) for use in package.digest.names]
+        names += [(use.name, use.at, use.conditions) for use in package.build.uses]
+        for text, at, conditions in names:
+            change = rows.get(text)
             if change is None or not view.active(conditions) or not view.concerned(package, change, at.path):
                 continue
-            if f"{text}.".startswith(gone):
-                continue  # what it stands in has gone with it, and is told of
-            yield Hit(
-                at,
-                text,
-                f"`{text}` is deprecated in {change.package} {change.version}".strip(),
-                f"use `{change.new}`" if change.new else "",
-                package.name,
-                evidence=evidence_of(change),
-            )
+            if not f"{text}.".startswith(gone):  # else what it stands in has gone with it, which is reported
+                seen.add((at.path, at.line))
+                yield diagnose(of_row(Symbol("c++", text), change), at, text, package.name)
+    for package in view:
+        for use in list_cpp_uses(view, package):
+            if use.found.state == "deprecated" and use.sure and (use.at.path, use.at.line) not in seen:
+                yield diagnose(use.found, use.at, use.name, package.name)

@@ -23,66 +23,55 @@ Not reported
 from ...model.package import IncludeUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.evidence import evidence_of, of_offered
-from ...targets.surface.offers import Offered
-from ...targets.target import Change
+from ...targets.availability import of_row
+from ...targets.evidence import of_offered
+from ...targets.symbol import Availability, Symbol
 from ..fix_actions import Replace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
 from ..severity import Doubt
+from .diagnosis import availability_texts, data_of
 
 
-@rule(doubts=(Doubt.DEPRECATED,))
+@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts("include"))
 def moved_header(view: View):
     moved = {
-        c.old: c
+        c.old: (of_row(Symbol("header", c.old), c), c.kind != "header-removed")
         for c in view.changes("header-removed", "header-renamed", "header-moved")
         if c.state == "deprecated" and c.old
     }
-    offered: dict[str, Offered | None] = {}
+    offered: dict[str, Availability | None] = {}
     for package in view:
         for include in package.digest.includes:
             path = include.path
-            change = moved.get(path)
-            if change is None and path not in offered:
-                offered[path] = _deprecated(view, path)
-            evidence = evidence_of(change) if change is not None else None
-            if change is None and (found := offered[path]) is not None:
-                change, evidence = _change(found), of_offered(found)
-            if change is None or not view.active(include.conditions) or view.workspace.provides_header(path):
+            found, as_it_is = moved.get(path, (None, True))
+            if found is None and path not in offered:
+                offered[path] = _find_deprecated(view, path)
+            found = found or offered[path]
+            if found is None or not view.active(include.conditions) or view.workspace.provides_header(path):
                 continue
-            yield Hit(
-                include.at,
-                path,
-                f"`{path}` is deprecated in {change.package} {change.version}".strip(),
-                f"include `{change.new}`" + (f", there since {change.since}" if change.since else "")
-                if change.new
-                else "",
-                package.name,
-                fix=respelt(view, package, include, change),
-                evidence=evidence,
+            fix = respell(view, package, include, found.replacement) if as_it_is else ()
+            yield Diagnostic(
+                include.at, path, package.name, data_of(found), "deprecated", fix=fix, evidence=found.evidence
             )
 
 
-def _deprecated(view: View, path: str) -> Offered | None:
+def _find_deprecated(view: View, path: str) -> Availability | None:
     """A header that warns in the target's version of who provides it, by the stored surfaces."""
     owners = [p.name for p in view.header(path) if p.kind == "ros" and p.name not in view.workspace.packages]
     found = view.offers.find("header", path, owners)
-    return found if found is not None and found.state == "deprecated" and found.sure else None
+    if found is None or found.state != "deprecated" or not found.sure:
+        return None
+    return Availability(Symbol("header", path), "deprecated", found.package, found.version,
+                        replacement=found.instead, evidence=of_offered(found))  # fmt: skip
 
 
-def _change(found: Offered) -> Change:
-    return Change("header-renamed", found.package, found.name, found.instead, "deprecated", found.version, "", "")
-
-
-def respelt(view: View, package: Package, include: IncludeUse, change: Change) -> tuple[Replace, ...]:
-    """The cure that includes a header by its new name: where the header moved as it is, the target has it there, and
-    the package has who provides it."""
+def respell(view: View, package: Package, include: IncludeUse, path: str) -> tuple[Replace, ...]:
+    """The fix that includes a header by its new path: where the target has it there, and the package has who provides
+    it."""
     at = include.at
-    if change.kind == "header-removed" or not change.new or not view.certain(include.conditions):
+    if not path or not view.certain(include.conditions) or view.environment.headers(path) is not True:
         return ()
-    if view.environment.headers(change.new) is not True:
-        return ()
-    if not view.answered(view.header(change.new), view.closure(package)):
+    if not view.answered(view.header(path), view.closure(package)):
         return ()
     # The column is that of `<` or the quotation mark.
-    return (Replace(at.path, at.line, at.column + 1, include.path, change.new),)
+    return (Replace(at.path, at.line, at.column + 1, include.path, path),)

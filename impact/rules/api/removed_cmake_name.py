@@ -24,42 +24,51 @@ Not reported
 
 from collections.abc import Iterator
 
+from ...facts.condition import Condition
 from ...model.cmake.build import At
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.availability import Symbol
-from ..rule import Hit, rule
-from ..severity import Doubt, doubts_of_place, severity
-from .build_api import hit_of, missing, rate
-from .upcoming import Upcoming, rated_all
+from ...targets.symbol import Symbol
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, doubts_of_place
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import availability_texts, diagnose, find_missing
+
+Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
-@rule(severity="error")
+@rule(scope="target", severity="error", texts=availability_texts())
 def removed_cmake_name(view: View):
-    gone = {c.old: c for c in view.changes("cmake-removed", "cmake-renamed") if c.state == "removed"}
-    folded = {name.lower(): c for name, c in gone.items()}
+    gone = {c.old: c.package for c in view.changes("cmake-removed", "cmake-renamed") if c.state == "removed"}
     for package in view:
-        told = set()
-        names = [(u.name, u.at, u.conditions, u.kind) for u in package.build.uses]
+        names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
         names += [
-            (link.item, link.at, (*t.conditions, *link.conditions), "target")
-            for t in package.build.targets
-            for link in t.links
+            (link.item, link.at, (*target.conditions, *link.conditions), "target")
+            for target in package.build.targets
+            for link in target.links
         ]
-        yield from rated_all(_by_surfaces(view, package, [name for name in names if name[0] not in gone]))
-        for name, at, conditions, kind in names:
-            change = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
-            if change is None or name in told or not view.active(conditions):
-                continue
-            found = view.availability(Symbol(kind, name, (change.package,)))
-            if not found.is_missing:
-                continue  # what is stored of the very release contradicts the row
-            told.add(name)
+        yield from rate_upcoming(_list_unexported(view, package, [name for name in names if name[0] not in gone]))
+        yield from rate_upcoming(_list_reviewed(view, package, names, gone))
+
+
+def _list_reviewed(
+    view: View, package: Package, names: Names, gone: dict[str, str]
+) -> Iterator[Diagnostic | Upcoming]:
+    """What the tables of known changes tell, unless what is stored of the very release contradicts it."""
+    folded = {name.lower(): owner for name, owner in gone.items()}
+    seen = set()
+    for name, at, conditions, kind in names:
+        owner = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
+        if owner is None or name in seen or not view.active(conditions):
+            continue
+        found = view.availability(Symbol(kind, name, (owner,)))
+        if found.is_missing:
+            seen.add(name)
             doubts = (*doubts_of_place(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
-            yield hit_of(found, at, name, package.name)._replace(severity=severity(*doubts))
+            yield diagnose(found._replace(sure=True), at, name, package.name, doubts)
 
 
-def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[Hit | Upcoming]:
+def _list_unexported(view: View, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
     """What the stored versions of the packages that are found do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
     own = {target.name for one in view.workspace for target in one.build.targets}
@@ -76,6 +85,6 @@ def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[H
             places[key] = at, certain
     for (kind, name), (at, certain) in places.items():
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
-        lost = missing(view, kind, name, packages)
+        lost = find_missing(view, kind, name, packages)
         if lost is not None:
-            yield rate(lost, hit_of(lost, at, name, package.name), (certain or Doubt.CONDITIONAL,))
+            yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL,))

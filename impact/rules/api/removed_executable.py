@@ -30,23 +30,32 @@ from collections.abc import Iterator
 from ...model.package import ReferenceUse
 from ...model.view import View
 from ...model.workspace import Package
-from ..rule import Hit, rule
-from ..severity import Doubt, doubts_of_place, severity
-from .build_api import hit_of, missing, of_another_distro, rate
-from .upcoming import Upcoming, rated_all
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, doubts_of_place
+from ..text import Text
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import UPSTREAM, availability_texts, diagnose, find_missing, is_of_another_distro
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        **availability_texts(),
+        "argument": Text(f"`{{file}}` of {UPSTREAM} no longer has an argument `{{name}}`"),
+        "argument early": Text(f"`{{file}}` of {UPSTREAM} has no argument `{{name}}`[[ (added in {{since}})]]"),
+    },
+)
 def removed_executable(view: View):
     for package in view:
-        yield from rated_all(_of_package(view, package))
+        yield from rate_upcoming(_of_package(view, package))
 
 
-def _of_package(view: View, package: Package) -> Iterator[Hit | Upcoming]:
+def _of_package(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]:
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         reference = use.reference
-        if of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
+        if is_of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
             continue
         if reference.package and reference.package != package.name and "$" not in reference.name:
             if reference.kind == "executable":
@@ -57,15 +66,15 @@ def _of_package(view: View, package: Package) -> Iterator[Hit | Upcoming]:
                 yield from _arguments(view, package.name, use, path)
 
 
-def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Hit | Upcoming]:
-    found = missing(view, side, name, (use.reference.package,))
+def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
+    found = find_missing(view, side, name, (use.reference.package,))
     if found is not None:
         doubts = [*doubts_of_place(view, use.role), view.target.ros == 2 or Doubt.LATE]
         if use.reference.conditional or use.role == "test":
             doubts.append(Doubt.LATE)
         if view.target.ros == 2 and name.endswith((".launch", ".launch.xml")):
             doubts.append(Doubt.UNCOMPILED)
-        yield rate(found, hit_of(found, use.at, name, package), tuple(doubts))
+        yield diagnose(found, use.at, name, package, doubts)
 
 
 def _launch_file(view: View, package: str, name: str) -> str:
@@ -76,18 +85,17 @@ def _launch_file(view: View, package: str, name: str) -> str:
     return next((one.name for one in offer.every("launch file") if posixpath.basename(one.name) == name), name)
 
 
-def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterator[Hit]:
+def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterator[Diagnostic]:
     """Arguments given to an included launch file that no launch file of the target's version declares."""
     reference = use.reference
     for name in reference.arguments or ():
-        found = missing(view, "launch argument", f"{path} {name}", (reference.package,))
+        found = find_missing(view, "launch argument", f"{path} {name}", (reference.package,))
         offer = view.offers.package(reference.package) if found is not None else None
         if found is None or offer is None or found.state == "upcoming":
             continue
         if any(name == known for launch in offer.build.launches for known, _ in launch.arguments):
             continue
-        have = f"no longer has an argument `{name}`" if found.state == "removed" else f"has no argument `{name}` yet"
-        yield Hit(
-            use.at, f"{path} {name}", f"`{path}` of {found.package} {found.version} {have}", package=package,
-            severity=severity(*doubts_of_place(view, use.role), Doubt.LATE), evidence=found.evidence,
-        )  # fmt: skip
+        data = {"file": path, "name": name, "upstream": found.package, "version": found.version, "since": found.since}
+        kind = "argument" if found.state == "removed" else "argument early"
+        doubts = (*doubts_of_place(view, use.role), Doubt.LATE)
+        yield Diagnostic(use.at, f"{path} {name}", package, data, kind, doubts, evidence=found.evidence)

@@ -23,51 +23,43 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
-from ..severity import Doubt, doubts_of_place, severity
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, doubts_of_place
+from ..text import Text
+
+_GONE = "package `{subject}` is not available in {distro}"
+TEXTS = {
+    "declared": Text(_GONE, "remove the dependency"),
+    "declared, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "depend on `{replacement}`"),
+    "found": Text(_GONE),
+    "found, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "find `{replacement}`"),
+}
 
 
-@rule(severity="error")
+@rule(scope="target", severity="error", texts=TEXTS)
 def removed_package(view: View):
-    yield from gone_packages(view, "package-removed")
+    yield from list_gone_packages(view, "package-removed")
 
 
-def gone_packages(view: View, kind: str):
-    """Hits for every use of a package whose change of the given kind is in force."""
-    gone = {c.old or c.package: c for c in view.changes(kind) if c.state == "removed"}
+def list_gone_packages(view: View, kind: str):
+    """Diagnostics for every use of a package whose change of the given kind is in force."""
+    gone = {c.old or c.package: c.new for c in view.changes(kind) if c.state == "removed"}
     for package in view:
-        told = set()
-        for dependency in package.manifest.dependencies:
-            change = gone.get(dependency.name)
-            if change is None or dependency.name in told or dependency.kind in ("conflict", "replace"):
+        uses = [
+            (d.name, "declared", view.manifest_place(package, d),
+             (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
+            for d in package.manifest.dependencies
+            if d.kind not in ("conflict", "replace") and (not d.condition or view.active_manifest(d.condition))
+        ]  # fmt: skip
+        uses += [
+            (f.name, "found", f.at, (*doubts_of_place(view, "build", f.conditions), f.required or Doubt.OPTIONAL))
+            for f in package.build.found
+            if view.active(f.conditions)
+        ]
+        seen = set()
+        for name, how, at, doubts in uses:
+            if name not in gone or name in seen or view.available(name):
                 continue
-            if view.available(dependency.name) or (
-                dependency.condition and not view.active_manifest(dependency.condition)
-            ):
-                continue
-            told.add(dependency.name)
-            yield Hit(
-                view.manifest_place(package, dependency),
-                dependency.name,
-                _message(view, change, dependency.name),
-                f"depend on `{change.new}`" if change.new else "remove the dependency",
-                package.name,
-                severity=severity(dependency.kind in ("build", "buildtool", "exec") or Doubt.TEST),
-            )
-        for found in package.build.found:
-            change = gone.get(found.name)
-            if change is None or found.name in told or view.available(found.name) or not view.active(found.conditions):
-                continue
-            told.add(found.name)
-            yield Hit(
-                found.at,
-                found.name,
-                _message(view, change, found.name),
-                f"find `{change.new}`" if change.new else "",
-                package.name,
-                severity=severity(*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL),
-            )
-
-
-def _message(view: View, change, name: str) -> str:
-    return f"`{name}` is gone in {view.target.distro}" + (f", its successor is `{change.new}`" if change.new else "")
+            seen.add(name)
+            data = {"distro": view.target.distro, "replacement": gone[name]}
+            yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)

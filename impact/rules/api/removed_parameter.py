@@ -35,11 +35,13 @@ from ...targets.evidence import of_offered
 from ...targets.parameters import renamed_parameters
 from ...targets.surface.changes import PARAMETER
 from ...targets.surface.offers import Offer, Offered
-from ..rule import Hit, rule
-from .build_api import of_another_distro
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .diagnosis import is_of_another_distro
 
 _FEW = 3
-"""So many of one owner are told one by one; of more the first is told, and how many there are."""
+"""So many of one owner are reported one by one; of more the first is reported, and how many there are."""
+_HELP = "[[set `{replacement}`]]"
 
 
 class _Lost(NamedTuple):
@@ -50,38 +52,52 @@ class _Lost(NamedTuple):
     instead: str
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="warning",
+    texts={
+        "removed": Text("the parameter `{subject}` is no longer declared by {upstream} {version}", _HELP),
+        "removed, many": Text(
+            "`{subject}` and {more} more parameters of this file are no longer declared by {upstream} {version}", _HELP
+        ),
+        "not yet": Text(
+            "the parameter `{subject}` is not declared by {upstream} {version}[[ (added in {since})]]", _HELP
+        ),
+        "not yet, many": Text(
+            "`{subject}` and {more} more parameters of this file are not declared by {upstream} {version}"
+            "[[ (added in {since})]]",
+            _HELP,
+        ),
+    },
+)
 def removed_parameter(view: View):
     for package in view:
-        told: dict[tuple[str, str, str, bool], list[_Lost]] = {}
+        by_owner: dict[tuple[str, str, str, bool], list[_Lost]] = {}
         for lost in _lost(view, package):
             owner = lost.use.plugin or lost.use.node
-            told.setdefault((lost.use.at.path, owner, lost.offered.package, _gone(lost)), []).append(lost)
-        for found in told.values():
+            by_owner.setdefault((lost.use.at.path, owner, lost.offered.package, _gone(lost)), []).append(lost)
+        for found in by_owner.values():
             if len(found) <= _FEW:
-                yield from (_hit(package, lost) for lost in found)
+                yield from (_diagnose(package, lost) for lost in found)
             else:
-                yield _hit(package, found[0], len(found) - 1)
+                yield _diagnose(package, found[0], len(found) - 1)
 
 
 def _gone(lost: _Lost) -> bool:
     return lost.offered.state != "absent"
 
 
-def _hit(package: Package, lost: _Lost, more: int = 0) -> Hit:
-    name, offered = lost.use.name, lost.offered
-    beside = f" and {more} more that the same file sets" if more else ""
-    are, when = ("are" if more else "is"), ("no longer" if _gone(lost) else "not yet")
-    what = "parameters" if more else "a parameter"
-    cure = f"it is there since {offered.package} {offered.first}" if offered.state == "absent" else ""
-    return Hit(
-        lost.use.at,
-        name,
-        f"`{name}`{beside} {are} {when} {what} of {offered.package} {offered.version}",
-        f"set `{lost.instead}`" if lost.instead else cure,
-        package.name,
-        evidence=of_offered(offered),
-    )
+def _diagnose(package: Package, lost: _Lost, more: int = 0) -> Diagnostic:
+    offered = lost.offered
+    data = {
+        "upstream": offered.package,
+        "version": offered.version,
+        "since": "" if _gone(lost) else offered.first,
+        "replacement": lost.instead,
+        "more": more,
+    }
+    kind = f"{'removed' if _gone(lost) else 'not yet'}{', many' if more else ''}"
+    return Diagnostic(lost.use.at, lost.use.name, package.name, data, kind, evidence=of_offered(offered))
 
 
 def _lost(view: View, package: Package) -> Iterator[_Lost]:
@@ -95,7 +111,7 @@ def _lost(view: View, package: Package) -> Iterator[_Lost]:
     for use in uses:
         beside.setdefault((use.at.path, use.plugin, use.node), set()).add(last_part(use.name))
     for use in dict.fromkeys(uses):
-        if (use.at.path, use.at.line) in explained or of_another_distro(view, use.at.path, files):
+        if (use.at.path, use.at.line) in explained or is_of_another_distro(view, use.at.path, files):
             continue
         offered = next((found for offer in _owners(view, use) if (found := _offered(view, offer, use))), None)
         if offered is None:

@@ -29,34 +29,34 @@ from collections.abc import Iterator
 from ...model.package import ReferenceUse
 from ...model.view import View
 from ...model.workspace import Package
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
-from .build_api import hit_of, missing, of_another_distro, rate
-from .upcoming import Upcoming, rated_all
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import availability_texts, diagnose, find_missing, is_of_another_distro
 
 
-@rule(severity="error")
+@rule(scope="target", severity="error", texts=availability_texts())
 def removed_plugin(view: View):
     own = {plugin.name or plugin.type for package in view.workspace for _, plugin in package.digest.plugins}
     for package in view:
-        yield from rated_all(_of_package(view, package, own))
+        yield from rate_upcoming(_of_package(view, package, own))
 
 
-def _of_package(view: View, package: Package, own: set[str]) -> Iterator[Hit | Upcoming]:
+def _of_package(view: View, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         name = use.reference.name
         # The type of a transmission is a word for whoever reads the description; nothing loads it as it stands.
         if use.reference.kind != "plugin" or name in own or name.startswith(("$", "transmission_interface/")):
             continue
-        found = missing(view, "plugin", name, _packages(view, package, use))
-        if found is None or of_another_distro(view, use.at.path, files):
+        found = find_missing(view, "plugin", name, _packages(view, package, use))
+        if found is None or is_of_another_distro(view, use.at.path, files):
             continue
         loaded = bool(use.reference.package) and not use.reference.conditional
         other = _respelt(view, found.package, name)
         doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
-        hit = hit_of(found, use.at, name, package.name, f"use `{other}`" if other else "")
-        yield rate(found, hit, doubts)
+        found = found._replace(replacement=other, moved_to="") if other else found
+        yield diagnose(found, use.at, name, package.name, doubts)
 
 
 def _packages(view: View, package: Package, use: ReferenceUse) -> list[str]:

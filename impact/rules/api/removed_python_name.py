@@ -26,44 +26,34 @@ Not reported
     written.
 """
 
-from ...model.package import PythonApiUse
+from collections.abc import Iterator
+
 from ...model.view import View
-from ...targets.surface.offers_python import Lost
-from ..rule import SEVERITIES, Hit, rule
-from ..severity import severity
-from .python_api import doubts_of, evidence_of, uses_coming, uses_lost
-from .upcoming import Upcoming, rated
-
-_STATES = {
-    "removed": "is not available in {} (removed in {})",
-    "absent": "is not available in {} (added in {})",
-    "unknown": "is not in {}, nor in any other version of it that was read",
-}
+from ...model.workspace import Package
+from ..rule import SEVERITIES, Diagnostic, rule
+from ..severity import Doubt, severity
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import availability_texts, diagnose
+from .uses import UnservedUse, list_python_uses
 
 
-@rule(severity="error")
+@rule(scope="target", severity="error", texts=availability_texts())
 def removed_python_name(view: View):
     for package in view:
-        # Of each name the worst place in a file: what follows a failed import is not reached.
-        worst: dict[tuple[str, str], tuple[int, PythonApiUse, Lost]] = {}
-        for found, lost in uses_lost(view, package):
-            if lost.state in _STATES:
-                key, rank = (found.at.path, lost.name), SEVERITIES.index(severity(*doubts_of(view, found, lost)))
-                if key not in worst or rank > worst[key][0]:
-                    worst[key] = rank, found, lost
-        for rank, found, lost in worst.values():
-            state = _STATES[lost.state].format(f"{lost.package} {lost.version}", lost.first)
-            cure = f"use `{lost.instead}`" if lost.instead else ""
-            evidence = None if lost.state == "unknown" else evidence_of(lost)
-            yield Hit(found.at, lost.name, f"`{lost.name}` {state}", cure, package.name, severity=SEVERITIES[rank],
-                      evidence=evidence)  # fmt: skip
-        coming: dict[tuple[str, str], Upcoming] = {}
-        for found, lost, ahead in uses_coming(view, package):
-            if lost.state == "removed":
-                message = f"`{lost.name}` will be removed: not in {lost.package} {lost.version} ({ahead.name})"
-                advice = f"use `{lost.instead}`" if lost.instead else ""
-                hit = Hit(found.at, lost.name, message, advice, package.name, evidence=evidence_of(lost))
-                order = found.at.path, found.at.line, found.at.column
-                one = Upcoming(hit, lost.package, ahead, doubts_of(view, found, lost), order)
-                coming.setdefault((found.at.path, lost.name), one)
-        yield from rated(coming.values())
+        yield from rate_upcoming(_list_removed(view, package))
+
+
+def _list_removed(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]:
+    # Of each name the worst place in a file: what follows a failed import is not reached.
+    worst: dict[tuple[str, str, bool], UnservedUse] = {}
+    for use in list_python_uses(view, package):
+        if use.found.is_missing or (use.found.state == "upcoming" and not use.found.form):
+            key = use.at.path, use.name, use.found.is_missing
+            if key not in worst or (use.found.is_missing and _rank(use) > _rank(worst[key])):
+                worst[key] = use
+    for use in worst.values():
+        yield diagnose(use.found, use.at, use.name, package.name, use.doubts)
+
+
+def _rank(use: UnservedUse) -> int:
+    return SEVERITIES.index(severity(*use.doubts, use.found.sure or Doubt.INCOMPLETE))

@@ -24,9 +24,9 @@ Not reported
 
 from ...model.view import View
 from ..rule import rule
-from .removed_package import gone_packages
+from .removed_package import TEXTS, list_gone_packages
 
 
-@rule(severity="error")
+@rule(scope="target", severity="error", texts=TEXTS)
 def renamed_package(view: View):
-    yield from gone_packages(view, "package-renamed")
+    yield from list_gone_packages(view, "package-renamed")

@@ -7,7 +7,7 @@ What it does
     branch for all targets.
 
 Why it matters
-    The cure that one developer applies breaks the build of another: no spelling is right on all targets asked for.
+    The fix that one developer applies breaks the build of another: no single spelling works on all targets asked for.
 
 Severity
     note.
@@ -30,39 +30,40 @@ from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import At
 from ...targets.evidence import Evidence
-from ..rule import Finding, Hit, rule
+from ..rule import Diagnostic, Finding, rule
+from ..text import Text
+
+_MESSAGE = "no single spelling works on {where} for {names}, which changed in `{subject}`"
 
 
-@rule(scope="workspace", severity="note")
+@rule(
+    scope="workspace",
+    severity="note",
+    texts={
+        "one name": Text(_MESSAGE),
+        "names": Text(_MESSAGE, "keep both spellings in one header of your own, and include that"),
+    },
+)
 def unguarded_split(workspace):
-    """What splits is known only after all targets were judged, so check.py calls split()."""
+    """What splits is known only after the rules ran on all targets, so check.py calls list_splits()."""
     return iter(())
 
 
-def split(findings: Iterable[tuple[Finding, Evidence, tuple[str, ...], tuple[str, ...]]]) -> Iterator[tuple[str, Hit]]:
-    """(target, hit) of names that no spelling serves. findings: each with its evidence, and the targets that take only
-    the old or only the new spelling."""
+def list_splits(
+    findings: Iterable[tuple[Finding, Evidence, tuple[str, ...], tuple[str, ...]]],
+) -> Iterator[tuple[str, Diagnostic]]:
+    """(target, diagnostic) of names that no spelling serves. findings: each with its evidence, and the targets that
+    take only the old or only the new spelling."""
     groups: dict[tuple[str, str], list] = {}
     for entry in findings:
         if entry[0].severity == "note":
             continue  # such code is not compiled everywhere, or stands under a test
         groups.setdefault((entry[0].package, entry[1].package), []).append(entry)
     for (package, changed), entries in groups.items():
-        names = list(dict.fromkeys(finding.subject for finding, *_ in entries))
+        names = tuple(dict.fromkeys(finding.subject for finding, *_ in entries))
         first, _, old, new = entries[0]
-        told = ", ".join(f"`{name}`" for name in names[:_MOST]) + (
-            f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
-        )
-        count = "one name" if len(names) == 1 else f"{len(names)} names"
-        has = "has" if len(names) == 1 else "have"
-        message = f"{count} of {changed} {has} no spelling that is right on {_listed([*old, *new])}: {told}"
-        cure = "keep both spellings in one header of your own, and include that" if len(names) > 1 else ""
-        for target in (*old, *new):
-            yield target, Hit(At(first.path, first.line, first.column), changed, message, cure, package, "note")
-
-
-_MOST = 4
-
-
-def _listed(names: list[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}"
+        targets = [*old, *new]
+        data = {"names": names, "where": f"{', '.join(targets[:-1])} and {targets[-1]}"}
+        at = At(first.path, first.line, first.column)
+        for target in targets:
+            yield target, Diagnostic(at, changed, package, data, "names" if len(names) > 1 else "one name")

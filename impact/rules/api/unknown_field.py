@@ -27,14 +27,34 @@ Not reported
     workspace itself brings.
 """
 
+from collections.abc import Iterator
+
 from ...model.package import MemberUse
 from ...model.view import View
-from ..rule import Hit, rule
-from ..severity import Doubt, doubts_of_place, severity
-from .upcoming import Upcoming, rated
+from ...model.workspace import Package
+from ...targets.symbol import Symbol
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, doubts_of_place
+from ..text import Text
+from ..upcoming import Upcoming, rate_upcoming
+from .diagnosis import UPSTREAM, availability_texts, data_of, diagnose, find_missing
+
+_MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"
+_HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        **availability_texts(),
+        "field removed": Text(f"{_MISSING}[[ (removed in {{since}})]]", _HELP),
+        "field not yet": Text(f"{_MISSING}[[ (added in {{since}})]]", _HELP),
+        "field upcoming": Text(
+            f"`{{subject}}` of `{{interface}}` will be removed: not in {UPSTREAM} ({{horizon}})", _HELP
+        ),
+    },
+)
 def unknown_field(view: View):
     own = {
         member.name
@@ -43,58 +63,50 @@ def unknown_field(view: View):
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
-    # What the tables of names tell already is removed-symbol's.
+    # What the tables of names say already is removed-symbol's.
     named = {
         c.old
         for c in view.changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
         if c.state == "removed"
     }
     for package in view:
-        upcoming: list[Upcoming] = []
-        for use in package.digest.members:
-            if (not use.sure and use.member in own) or not named.isdisjoint(_spellings(use)):
-                continue
-            # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
-            if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
-                continue
-            lacking = view.lacking_member(use)
-            doubts = doubts_of_place(view, use.role, use.conditions)
-            if not use.sure:
-                doubts = (*doubts, Doubt.INCOMPLETE)
-            if lacking is None:
-                coming = view.coming_member(use)
-                if coming is not None and coming.ahead is not None:
-                    hit = Hit(use.at, use.member, coming.message, coming.help, package.name, evidence=coming.evidence)
-                    order = use.at.path, use.at.line, use.at.column
-                    upcoming.append(Upcoming(hit, f"{use.package}/{use.interface}", coming.ahead, doubts, order))
-                continue
-            yield Hit(
-                use.at,
-                use.member,
-                lacking.message,
-                lacking.help,
-                package.name,
-                severity=severity(*doubts),
-                evidence=lacking.evidence,
-            )
-        yield from rated(upcoming)
-        for imported in package.digest.imports:
-            for name in imported.names:
-                lost = view.lost_interface_module(imported.module, name)
-                if lost is None or f"{imported.module}.{name}" in named or not view.active(imported.conditions):
-                    continue
-                yield Hit(
-                    imported.at,
-                    f"{imported.module}.{name}",
-                    lost.message,
-                    lost.help,
-                    package.name,
-                    severity=severity(*doubts_of_place(view, imported.role, imported.conditions), Doubt.LATE),
-                    evidence=lost.evidence,
-                )
+        yield from rate_upcoming(_list_members(view, package, own, named))
+        yield from rate_upcoming(_list_imports(view, package, named))
 
 
-def _spellings(use: MemberUse) -> tuple[str, ...]:
+def _list_members(view: View, package: Package, own: set[str], named: set[str]) -> Iterator[Diagnostic | Upcoming]:
+    for use in package.digest.members:
+        if (not use.sure and use.member in own) or not named.isdisjoint(_list_spellings(use)):
+            continue
+        # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
+        if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
+            continue
+        if use.ros != view.target.ros:
+            continue
+        name = f"{use.package}/{use.interface}"
+        found = find_missing(view, "field", f"{use.interface}.{use.section}.{use.member}", (use.package,))
+        if found is not None:
+            doubts = (*doubts_of_place(view, use.role, use.conditions), use.sure or Doubt.INCOMPLETE)
+            data = {**data_of(found), "interface": name}
+            kind = f"field {found.state}"
+            yield diagnose(found, use.at, use.member, package.name, doubts, kind=kind, data=data, changed=name)
+
+
+def _list_imports(view: View, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:
+    """Interfaces that Python imports."""
+    for imported in package.digest.imports:
+        head, _, kind = imported.module.partition(".")
+        if kind not in ("msg", "srv", "action"):
+            continue
+        for name in imported.names:
+            full = f"{imported.module}.{name}"
+            found = view.availability(Symbol("interface", f"{kind}/{name}", (head,)))
+            if found.is_missing and full not in named and view.active(imported.conditions):
+                doubts = (*doubts_of_place(view, imported.role, imported.conditions), Doubt.LATE)
+                yield diagnose(found, imported.at, full, package.name, doubts)
+
+
+def _list_spellings(use: MemberUse) -> tuple[str, ...]:
     """A constant as the tables of names have it."""
     kind, _, name = use.interface.partition("/")
     part = "" if use.section == "message" else use.section.capitalize()

@@ -22,73 +22,73 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _BUILD = frozenset({"build"})
 _RUN = frozenset({"exec", "build_export"})
+_STOPS = ", so catkin_package() stops"
+_HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "cmake": Text(
+            f"`{{subject}}` is in CATKIN_DEPENDS but is a plain CMake package{_STOPS}",
+            "name `{subject}` in DEPENDS instead",
+        ),
+        "system": Text(
+            f"`{{subject}}` is in CATKIN_DEPENDS but is a system library{_STOPS}", "name `{subject}` in DEPENDS instead"
+        ),
+        "run": Text(f"`{{subject}}` is in CATKIN_DEPENDS but is not a run dependency{_STOPS}", _HELP),
+        "build": Text(
+            f"`{{subject}}` is found and is in CATKIN_DEPENDS but is not a build dependency{_STOPS}", _HELP
+        ),
+    },
+)
 def catkin_depends(view: View):
-    if view.target.ros != 1:
-        return
-    for package in view:
+    for package in view if view.target.ros == 1 else ():
         build = package.build
         if build.catkin_package is None or package.build_type != "catkin":
             continue
         declared = view.declared(package)
         components = {f.name for f in build.found if f.how == "catkin" and view.certain(f.conditions)}
-        told = set()
+        old = package.manifest.format == 1
+        seen = set()
         for export in build.exports:
             name = export.item
-            if export.how != "catkin_depends" or "$" in name or name in told or not view.certain(export.conditions):
+            if export.how != "catkin_depends" or "$" in name or name in seen or not view.certain(export.conditions):
                 continue
-            told.add(name)
+            seen.add(name)
             kinds = declared.get(name, set())
-            plain, sure = _not_catkin(view, name)
-            if plain and any(f.name == name and f.required for f in build.found):
-                yield Hit(
-                    export.at,
-                    name,
-                    f"`{name}` is in CATKIN_DEPENDS and {plain}, so catkin_package() stops",
-                    f"name `{name}` in DEPENDS instead",
-                    package.name,
-                    severity="error" if sure else "warning",
-                )
-            elif not kinds & _RUN:
-                yield Hit(
-                    export.at,
-                    name,
-                    f"`{name}` is in CATKIN_DEPENDS and is no run dependency, so catkin_package() stops",
-                    _cure(package, name, "run_depend", "depend" if not kinds else "exec_depend"),
-                    package.name,
-                )
-            elif name in components and not kinds & _BUILD:
-                yield Hit(
-                    export.at,
-                    name,
-                    f"`{name}` is found, is in CATKIN_DEPENDS and is no build dependency, so catkin_package() stops",
-                    _cure(package, name, "build_depend", "build_depend"),
-                    package.name,
-                )
+            kind, sure = _why_not_catkin(view, name)
+            tag = "build_depend"
+            if not kind or not any(f.name == name and f.required for f in build.found):
+                sure = True
+                if not kinds & _RUN:
+                    kind, tag = "run", "run_depend" if old else "exec_depend" if kinds else "depend"
+                elif name in components and not kinds & _BUILD:
+                    kind = "build"
+                else:
+                    continue
+            data = {"tag": tag, "manifest": package.digest.manifest_path} if kind in ("run", "build") else {}
+            yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
 
 
-def _cure(package, name: str, first: str, second: str) -> str:
-    tag = first if package.manifest.format == 1 else second
-    return f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}"
-
-
-def _not_catkin(view: View, name: str) -> tuple[str, bool]:
-    """Why a package is no catkin package on the target, as the end of a clause, and whether that is sure; empty when it
-    is one or may be."""
+def _why_not_catkin(view: View, name: str) -> tuple[str, bool]:
+    """Why a package is no catkin package on the target (`cmake`, `system`), and whether that is sure; empty when it is
+    one or may be."""
     own = view.workspace.packages.get(name)
     if own is not None:
-        return ("is a plain CMake package", True) if own.build_type == "cmake" else ("", False)
+        return ("cmake", True) if own.build_type == "cmake" else ("", False)
     if view.target.version(name) is not None:
         known = view.target.build_type(name)
         plain = (known or view.target.similar_build_type(name)) == "cmake"
         sure = bool(known) or view.target.known_build_types(name) == {"cmake"}
-        return ("is a plain CMake package", sure) if plain else ("", False)
+        return ("cmake", sure) if plain else ("", False)
     if view.target.resolve(name) is not None and not view.underlaid:
-        return "is a system library", True
+        return "system", True
     return "", False

@@ -23,29 +23,29 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="warning",
+    texts=Text(
+        "catkin_package() is called after {targets}", "call it before add_library() and add_executable()"
+    ),
+)
 def catkin_package_order(view: View):
     for package in view:
         call = package.build.catkin_package
         if call is None or package.build_type != "catkin":
             continue
         before = set(package.build.before_catkin_package)
-        early = [
-            target
+        early = tuple(
+            target.name
             for target in package.build.targets
             if target.name in before
             and target.kind in ("library", "executable", "module")
             and view.certain(target.conditions)
-        ]
+        )
         if early:
-            names = ", ".join(f"`{target.name}`" for target in early[:3]) + (", ..." if len(early) > 3 else "")
-            yield Hit(
-                call,
-                "catkin_package",
-                f"catkin_package() is called after {names} {'is' if len(early) == 1 else 'are'} added",
-                "call it before add_library() and add_executable()",
-                package.name,
-            )
+            yield Diagnostic(call, "catkin_package", package.name, {"targets": early})

@@ -26,13 +26,21 @@ Not reported
 import re
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 # How packages that install find modules are called.
 _BRINGS_MODULES = re.compile(r"cmake_modules?\Z")
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="warning",
+    texts=Text(
+        "`{found}` is found before `{subject}`, which provides its find module",
+        "call find_package({subject} REQUIRED) first",
+    ),
+)
 def find_order(view: View):
     for package in view:
         own = {name.rsplit("/", 1)[-1] for name in package.files if name.endswith(".cmake")}
@@ -52,10 +60,4 @@ def find_order(view: View):
                 "",
             )
             if later and not found.via:
-                yield Hit(
-                    found.at,
-                    later,
-                    f"`{found.name}` is found before `{later}`, which brings its find module",
-                    f"call find_package({later} REQUIRED) first",
-                    package.name,
-                )
+                yield Diagnostic(found.at, later, package.name, {"found": found.name})

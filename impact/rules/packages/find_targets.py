@@ -5,6 +5,7 @@ import re
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import View
+from ...targets.version import at_least
 from ..rule import Hit
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
@@ -117,7 +118,7 @@ def check_client_links(view: View, package):
 
 def check_own_name(view: View, package):
     """ament_target_dependencies() with the package itself, which nothing has found when it is built."""
-    if any(f.name == package.name for f in package.build.found) or any("$" in f.name for f in package.build.found):
+    if not stops_at_names(view) or any(f.name == package.name or "$" in f.name for f in package.build.found):
         return
     for target in package.build.targets:
         for link in target.links:
@@ -131,6 +132,12 @@ def check_own_name(view: View, package):
                     severity="error",
                 )
                 return
+
+
+def stops_at_names(view: View) -> bool:
+    """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
+    was never true. Source: commit 99d316a of ament_cmake."""
+    return at_least(view.target.version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 
 def list_given_names(view: View, package):

@@ -7,6 +7,7 @@ from ...model.cmake.names import MODULES
 from ...model.view import View
 from ...targets.providers.library import variables
 from ..rule import Hit
+from ..severity import Doubt, severity
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
 # Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
@@ -48,10 +49,23 @@ def check_unset_libraries(view: View, package):
             f"`{use.name}` is linked, and nothing sets it",
             f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
             package.name,
-            severity="error"
-            if _compiled_with(view, package, use.name, module, stem) and not _sets_others(view, package)
-            else "warning",
+            severity=severity(*_doubts(view, package, use.name, module, stem)),
         )
+
+
+def _doubts(view: View, package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
+    """What speaks against a linker that misses the library of an empty variable."""
+    providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
+    owners = {p.package or p.name for p in providers}
+    if not _compiled_with(view, package, variable, stem, owners) or _sets_others(view, package):
+        return (Doubt.INCOMPLETE,)
+    return (Doubt.LUCKY,) if _brings(view, package, providers[0].package) else ()
+
+
+def _brings(view: View, package, library: str) -> bool:
+    """True where the package of another library that is found depends on this one's, so that it may pass it on."""
+    found = {p.package for f in package.build.found for p in view.cmake(f.name)[:1] if p.kind == "system"}
+    return any(library in view.apt.brought_by(name) for name in found - {library, ""})
 
 
 def _sets_others(view: View, package) -> bool:
@@ -66,11 +80,9 @@ def _sets_others(view: View, package) -> bool:
     )
 
 
-def _compiled_with(view: View, package, variable: str, module: str, stem: str) -> bool:
+def _compiled_with(view: View, package, variable: str, stem: str, owners: set[str]) -> bool:
     """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
     headers."""
-    providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
-    owners = {p.package or p.name for p in providers}
     for target in package.build.targets:
         items = [link.item for link in target.links if link.how == "link"]
         if f"${{{variable}}}" not in items or not view.certain(target.conditions):

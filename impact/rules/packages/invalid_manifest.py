@@ -22,8 +22,10 @@ import re
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..fix_actions import Replace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
+_HELP = "[[write `{replacement}`]]"
 _TAGS = {
     1: ("build_depend", "buildtool_depend", "run_depend", "test_depend"),
     2: (
@@ -39,7 +41,19 @@ _TAGS = {
 }
 
 
-@rule(scope="workspace", severity="error")
+@rule(
+    scope="workspace",
+    severity="error",
+    texts={
+        "tag": Text(
+            "`<{subject}>{text}</{subject}>` is not a tag of format {format}, so `{text}` is not declared", _HELP
+        ),
+        "problem": Text("{problem}", "correct the manifest"),
+        "condition": Text(
+            "the condition `{subject}` cannot be read", "write it as REP 149 says, such as `$ROS_VERSION == 2`"
+        ),
+    },
+)
 def invalid_manifest(workspace: Workspace):
     for package in workspace:
         manifest, path = package.manifest, package.digest.manifest_path
@@ -47,28 +61,17 @@ def invalid_manifest(workspace: Workspace):
         for tag, text, line in manifest.unknown_tags:
             misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
-            yield Hit(
-                At(path, line),
-                tag,
-                f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
-                f"write `<{words}>`" if words != tag else "use a tag of this format",
-                package.name,
-                fix=_respelt(path, line, tag, words) if words in _TAGS[min(manifest.format, 2)] else (),
-            )
+            known = words in _TAGS[min(manifest.format, 2)]
+            data = {"text": text, "format": manifest.format, "replacement": f"<{words}>" if words != tag else ""}
+            fix = _respell(path, line, tag, words) if known else ()
+            yield Diagnostic(At(path, line), tag, package.name, data, "tag", fix=fix)
         for problem in manifest.problems:
             if problem.line not in misspelt:
-                yield Hit(
-                    At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name
-                )
+                at, data = At(path, problem.line), {"problem": problem.message}
+                yield Diagnostic(at, package.name or path, package.name, data, "problem")
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
             if not _PLAIN.match(condition) and not _readable(condition):
-                yield Hit(
-                    At(path, line),
-                    condition,
-                    f"the condition `{condition}` cannot be read",
-                    "write it as REP 149 says, such as `$ROS_VERSION == 2`",
-                    package.name,
-                )
+                yield Diagnostic(At(path, line), condition, package.name, kind="condition")
 
 
 # One comparison, or several joined by and/or: nothing that catkin_pkg could refuse. Asking it costs 60 ms of import.
@@ -86,6 +89,6 @@ def _readable(condition: str) -> bool:
     return True
 
 
-def _respelt(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
+def _respell(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
     """Both tags of an element that stands in one line."""
     return (Replace(path, line, 0, f"<{tag}>", f"<{words}>"), Replace(path, line, 0, f"</{tag}>", f"</{words}>"))

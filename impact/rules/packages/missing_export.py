@@ -32,11 +32,34 @@ import posixpath
 from ...model.cmake.links import found_with
 from ...model.view import View
 from ...targets.providers.library import variables
-from ..rule import Hit, rule
-from .exports_ament import lacking
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .exports_ament import TEXTS, list_unexported
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        **TEXTS,
+        "directory": Text(
+            "the exported include directory `{directory}` does not exist, so catkin stops",
+            "create it, or drop INCLUDE_DIRS",
+        ),
+        "no target": Text(
+            "the exported library `{subject}` is not a target of `{package}`", "export the library's target name"
+        ),
+        "system": Text(
+            "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing",
+            "{advice}",
+        ),
+        "messages": Text(
+            "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
+            "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
+        ),
+    },
+)
 def missing_export(view: View):
     for package in view:
         if not package.build.files:
@@ -46,7 +69,7 @@ def missing_export(view: View):
             yield from _catkin(view, package)
             yield from _message_packages(view, package)
         if package.build.ament_package is not None:
-            yield from lacking(view, package)
+            yield from list_unexported(view, package)
 
 
 def _directories(view: View, package):
@@ -60,14 +83,7 @@ def _directories(view: View, package):
         inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
         if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
             continue
-        yield Hit(
-            export.at,
-            "INCLUDE_DIRS",
-            f"the exported include directory `{inside}` does not exist, so catkin stops",
-            "create it, or drop INCLUDE_DIRS",
-            package.name,
-            severity="error",
-        )
+        yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 
 
 def _catkin(view: View, package):
@@ -84,27 +100,18 @@ def _catkin(view: View, package):
                 or view.cmake(export.item)
             ):
                 continue
-            yield Hit(
-                export.at,
-                export.item,
-                f"the exported library `{export.item}` is no target of `{package.name}`",
-                "export the library's target name",
-                package.name,
-                severity="error" if view.certain(export.conditions) and _own(view, package, export.item) else "warning",
-            )
+            sure = view.certain(export.conditions) and _is_own(view, package, export.item)
+            doubts = () if sure else (Doubt.AMBIGUOUS,)
+            yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
-            yield Hit(
-                export.at,
-                export.item,
-                f"nothing sets `{export.item}_INCLUDE_DIRS` or `{export.item}_LIBRARIES`, so DEPENDS exports nothing",
-                f"write `{near.upper() if near == 'Eigen3' else near}`" if near else f"find `{export.item}` first",
-                package.name,
-                severity="warning" if near else "note",
-            )
+            other = near.upper() if near == "Eigen3" else near
+            advice = f"write `{other}`" if near else f"find `{export.item}` first"
+            doubts = (Doubt.DISTURBS,) if near else (Doubt.DISPENSABLE,)
+            yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
 
 
-def _own(view: View, package, library: str) -> bool:
+def _is_own(view: View, package, library: str) -> bool:
     """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
     if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
         return False
@@ -137,10 +144,4 @@ def _message_packages(view: View, package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
                 reach |= {name}
-                yield Hit(
-                    at,
-                    name,
-                    f"messages are made of those of `{name}`, and `{name}` is not in CATKIN_DEPENDS",
-                    f"add `{name}` to CATKIN_DEPENDS of catkin_package()",
-                    package.name,
-                )
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,))

@@ -33,8 +33,16 @@ from ...model.cmake.links import found_with
 from ...model.view import View, interface_of
 from ...targets.version import at_least
 from ..rule import Hit, rule
+from ..severity import Doubt, severity
 from .find_catkin import check_components, check_find_modules, check_include_directories
-from .find_targets import ONE_FOLDER, check_client_links, check_given_packages, check_own_name, list_given_names
+from .find_targets import (
+    ONE_FOLDER,
+    check_client_links,
+    check_given_packages,
+    check_own_name,
+    list_given_names,
+    stops_at_names,
+)
 from .find_variables import check_prefixes, check_unset_libraries, fold
 from .unlinked import unlinked
 
@@ -79,6 +87,7 @@ def missing_find_package(view: View):
         shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         closure = view.closure(package)
         told = set()
+        given = severity(stops_at_names(view) or Doubt.LUCKY)
         for at, name in list_given_names(view, package):
             if name in reachable or name in told or name in package.digest.modules or name == package.name:
                 continue
@@ -89,7 +98,7 @@ def missing_find_package(view: View):
                 f"`{name}` is given to a target and find_package(`{name}`) is never called",
                 f"add find_package({name} REQUIRED)",
                 package.name,
-                severity="error",
+                severity=given,
             )
         sought = {fold(f.name) for f in package.build.found if f.name in outside}
         linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}

@@ -7,7 +7,7 @@ What it does
 
 Why it breaks
     A clean or parallel build compiles a source before its header exists, and fails on some machines on some days. A
-    field type of a package that the generator was not told of stops the build everywhere.
+    field type of a package that the generator was not seen of stops the build everywhere.
 
 Severity
     error where generation is sure to fail (a field's package is not given to the generator, or nothing brings the
@@ -26,14 +26,39 @@ Not reported
 import re
 
 from ...facts.interface import PRIMITIVES
+from ...model.cmake.build import At, for_tests
 from ...model.view import View
 from ..fix_actions import Declare, Insert
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),
+        "other type": Text("`{owner}` has no message `{name}`", "correct the type"),
+        "dependency": Text(
+            "`{type}` is a field type, but `{subject}` is not given to the generator",
+            "add `{subject}` to DEPENDENCIES of {generator}",
+        ),
+        "group": Text(
+            "`{package}` generates interfaces but is not a member of their group",
+            "add `<member_of_group>{subject}</member_of_group>` to package.xml",
+        ),
+        "generator": Text(
+            "messages are generated but `{subject}` is not found[[; only `{through}` brings it]]",
+            "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...)",
+        ),
+        "order": Text(
+            "`{header}` may be generated after its users are built: {targets}", "add_dependencies({target} {variable})"
+        ),
+    },
+)
 def missing_interface_wiring(view: View):
     for package in view:
         yield from _field_packages(view, package)
@@ -50,7 +75,7 @@ def _field_packages(view: View, package):
         return
     given = {name for g in generated for name, _ in g.dependencies}
     listed = {file for g in generated for file in g.files}
-    told = set()
+    seen = set()
     for interface in package.digest.interfaces:
         if interface.path not in listed:
             continue
@@ -62,71 +87,46 @@ def _field_packages(view: View, package):
                     owner = "std_msgs"
                 if not owner and field.type not in _ROS1_PRIMITIVE and "<" not in field.type:
                     names = {i.name for i in package.digest.interfaces}
-                    if field.type not in names and field.type not in told:
-                        told.add(field.type)
-                        yield Hit(
-                            _at(interface, field),
-                            field.type,
-                            f"`{field.type}` is no message of `{package.name}`",
-                            "correct the type, or name its package",
-                            package.name,
-                            severity="error",
-                        )
+                    if field.type not in names and field.type not in seen:
+                        seen.add(field.type)
+                        yield Diagnostic(_at(interface, field), field.type, package.name, kind="own type")
                     continue
-                if not owner or owner == package.name or owner in told:
+                if not owner or owner == package.name or owner in seen:
                     continue
                 names = view.workspace.interface_names.get(owner)
                 if owner in given:
-                    if names and name not in names and (owner, name) not in told:
-                        told.add((owner, name))
-                        yield Hit(
-                            _at(interface, field),
-                            f"{owner}/{name}",
-                            f"`{owner}` has no message `{name}`",
-                            "correct the type",
-                            package.name,
-                            severity="error",
-                        )
+                    if names and name not in names and (owner, name) not in seen:
+                        seen.add((owner, name))
+                        data = {"owner": owner, "name": name}
+                        yield Diagnostic(_at(interface, field), f"{owner}/{name}", package.name, data, "other type")
                     continue
                 if owner in view.spread(given):
                     continue
-                told.add(owner)
-                yield Hit(
-                    _at(interface, field),
-                    owner,
-                    f"`{field.type}` is a field type and the generator is not given `{owner}`",
-                    f"add `{owner}` to DEPENDENCIES of "
-                    + ("rosidl_generate_interfaces" if generated[0].how == "rosidl" else "generate_messages"),
-                    package.name,
-                    severity="error" if generated[0].how == "rosidl" or field.type != "Header" else "warning",
-                )
+                seen.add(owner)
+                rosidl = generated[0].how == "rosidl"
+                generator = "rosidl_generate_interfaces" if rosidl else "generate_messages"
+                data = {"type": field.type, "generator": generator}
+                doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
+                yield Diagnostic(_at(interface, field), owner, package.name, data, "dependency", doubts)
 
 
 def _at(interface, field):
-    from ...model.cmake.build import At
-
     return At(interface.path, field.line, field.column)
 
 
 def _rosidl_manifest(view: View, package):
     for generated in package.build.generated:
-        if generated.how != "rosidl" or not view.certain(generated.conditions):
+        if generated.how != "rosidl" or not view.certain(generated.conditions) or for_tests(generated.conditions):
             continue
         groups = {d.name for d in package.manifest.dependencies if d.kind == "member_of_group"}
         if "rosidl_interface_packages" not in groups:
-            yield Hit(
-                generated.at,
-                "rosidl_interface_packages",
-                f"`{package.name}` generates interfaces and is not in their group",
-                "add `<member_of_group>rosidl_interface_packages</member_of_group>` to package.xml",
-                package.name,
-                severity="warning",
-                fix=_joined(package),
-            )
+            fix = _join_group(package)
+            group = "rosidl_interface_packages"
+            yield Diagnostic(generated.at, group, package.name, kind="group", doubts=(Doubt.DISTURBS,), fix=fix)
         return
 
 
-def _joined(package) -> tuple[Declare, ...]:
+def _join_group(package) -> tuple[Declare, ...]:
     """Groups came with format 3."""
     if package.manifest.format < 3:
         return ()
@@ -142,14 +142,9 @@ def _catkin_generation(view: View, package):
         return  # genmsg looks for every generator that is installed
     if "message_generation" not in found:
         through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
-        yield Hit(
-            generated[0].at,
-            "message_generation",
-            "messages are generated and `message_generation` is never found"
-            + (f", but for `{through}` that brings it" if through else ""),
-            "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
-            package.name,
-            severity="warning" if through or "genmsg" in found or view.blind(package) else "error",
+        doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
+        yield Diagnostic(
+            generated[0].at, "message_generation", package.name, {"through": through}, "generator", doubts
         )
 
 
@@ -210,19 +205,14 @@ def _catkin_order(view: View, package):
     for (head, kind), uses in wanted.items():
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
-        cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
+        variable = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
         # As the file itself spells it; what dynamic_reconfigure makes is named by the variable everywhere.
-        variable = own and (package.build.project_by_variable or kind == "gencfg")
-        maker = "${PROJECT_NAME}" if variable else head
-        names = sorted({t.name for _, t in uses})
-        yield Hit(
-            target.at,
-            f"{maker}_{kind}",
-            f"{_several(names)} `{include.path}` and may be built before it is generated",
-            f"add_dependencies({names[0]} {cure})",
-            package.name,
-            fix=_waiting(package, [t for _, t in uses], cure) if own or _component(package, head) else (),
-        )
+        by_variable = own and (package.build.project_by_variable or kind == "gencfg")
+        maker = "${PROJECT_NAME}" if by_variable else head
+        names = tuple(sorted({t.name for _, t in uses}))
+        data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
+        fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _component(package, head) else ()
+        yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "order", (Doubt.LATE,), fix=fix)
 
 
 def _component(package, name: str) -> bool:
@@ -230,7 +220,7 @@ def _component(package, name: str) -> bool:
     return any(f.how == "catkin" and f.name == name for f in package.build.found)
 
 
-def _waiting(package, targets, variable: str) -> tuple[Insert, ...]:
+def _add_dependencies(package, targets, variable: str) -> tuple[Insert, ...]:
     """An add_dependencies behind each target's own command; nothing where one command, in a loop, makes several."""
     made = {}
     for target in package.build.targets:
@@ -241,12 +231,6 @@ def _waiting(package, targets, variable: str) -> tuple[Insert, ...]:
     return tuple(
         Insert(at.path, at.line, f"add_dependencies({name} {variable})") for name, at in sorted(places.items())
     )
-
-
-def _several(names: list[str]) -> str:
-    if len(names) == 1:
-        return f"`{names[0]}` includes"
-    return f"`{names[0]}` and {len(names) - 1} more include"
 
 
 def _waits(items, head: str, kind: str, package: str) -> bool:

@@ -30,8 +30,11 @@ from ...model.misspelling import Names, one_edit
 from ...model.view import View
 from ...targets.providers.library import not_answering, variables
 from ..fix_actions import Replace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
+_WRITE = "write `{replacement}`"
 _SUFFIXES = (
     "_INCLUDE_DIRS",
     "_INCLUDE_DIR",
@@ -44,7 +47,22 @@ _SUFFIXES = (
 )
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
+        "near": Text("no package provides `{subject}`; `{replacement}` is declared", _WRITE),
+        "case": Text("CMake package `{subject}` not found: names are case-sensitive", "did you mean `{replacement}`?"),
+        "case since": Text(
+            "CMake package `{subject}` not found: {replacement} {version} has `{replacement}Config.cmake`, and names "
+            "are case-sensitive",
+            _WRITE,
+        ),
+        "variable": Text("nothing sets `{subject}`; find_package({found}) is called", _WRITE),
+        "other variable": Text("find_package({found}) sets `{variable}`, so `{subject}` is empty", _WRITE),
+    },
+)
 def misspelt_cmake_name(view: View):
     for package in view:
         declared = view.declared(package)
@@ -59,27 +77,16 @@ def misspelt_cmake_name(view: View):
                 near = Names(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
             halves = _run_together(name, near.names)
             if halves:
-                yield Hit(
-                    at,
-                    name,
-                    f"`{name}` is `{halves[0]}` and `{halves[1]}` run together",
-                    f"write `{halves[0]} {halves[1]}`",
-                    package.name,
-                    severity="error" if required or (exported and view.certain(conditions)) else "warning",
-                    fix=(Replace(at.path, at.line, at.column, name, " ".join(halves)),),
-                )
+                sure = required or (exported and view.certain(conditions))
+                data = {"first": halves[0], "second": halves[1]}
+                fix = (Replace(at.path, at.line, at.column, name, " ".join(halves)),)
+                yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
                 continue
             meant = near.nearest(name) if exact else None
             if meant is not None and meant != name and view.target.ever_released(name) is False:
-                yield Hit(
-                    at,
-                    name,
-                    f"nobody provides `{name}`; `{meant}` is declared",
-                    f"write `{meant}`",
-                    package.name,
-                    severity="error" if required and view.certain(conditions) else "warning",
-                    fix=(Replace(at.path, at.line, at.column, name, meant),),
-                )
+                doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
+                fix = (Replace(at.path, at.line, at.column, name, meant),)
+                yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
         yield from _wrong_case(view, package)
         yield from _case_that_matters_now(view, package)
         yield from _variables(view, package, found)
@@ -100,15 +107,9 @@ def _wrong_case(view: View, package):
             continue
         # Whoever brings the module along under the other name means that one, whatever the platform has.
         sure = f"Find{meant[0]}.cmake" in own or view.target.platform in view.providers.platforms
-        yield Hit(
-            f.at,
-            f.name,
-            f"nobody provides `{f.name}`; CMake minds the case of `{meant[0]}`",
-            f"write `{meant[0]}`",
-            package.name,
-            severity="error" if sure else "warning",
-            fix=(Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),),
-        )
+        fix = (Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),)
+        doubts = (sure or Doubt.INCOMPLETE,)
+        yield Diagnostic(f.at, f.name, package.name, {"replacement": meant[0]}, "case", doubts, fix=fix)
 
 
 def _case_that_matters_now(view: View, package):
@@ -120,15 +121,9 @@ def _case_that_matters_now(view: View, package):
         version = not_answering(view.target, f.name)
         if not version or f"Find{f.name}.cmake" in view.workspace.cmake_files:
             continue
-        meant = f.name.lower()
-        yield Hit(
-            f.at,
-            f.name,
-            f"`{f.name}` is not found: {meant} {version} has `{meant}Config.cmake`, which minds the case",
-            f"write `{meant}`",
-            package.name,
-            severity="error" if f.required and view.certain(f.conditions) else "warning",
-        )
+        data = {"replacement": f.name.lower(), "version": version}
+        doubts = (f.required or Doubt.OPTIONAL, view.certain(f.conditions) or Doubt.CONDITIONAL)
+        yield Diagnostic(f.at, f.name, package.name, data, "case since", doubts)
 
 
 def _named(package):
@@ -172,9 +167,9 @@ def _set_by_hand(package) -> set[str]:
 def _variables(view: View, package, found):
     """Variables that only differ in case from what a find_package of the package sets."""
     folded = {name.lower(): name for name in found}
-    told = set()
+    seen = set()
     for use in package.build.uses:
-        if use.name in told or use.kind != "variable" or not view.active(use.conditions):
+        if use.name in seen or use.kind != "variable" or not view.active(use.conditions):
             continue
         for suffix in _SUFFIXES:
             if use.name.endswith(suffix):
@@ -184,15 +179,8 @@ def _variables(view: View, package, found):
             continue
         meant = next((name for name in found if name.isidentifier() and _is_slip(stem, name)), None)
         if meant is not None and not view.cmake(stem) and use.name not in _set_by_hand(package):
-            told.add(use.name)
-            yield Hit(
-                use.at,
-                use.name,
-                f"nothing sets `{use.name}`; find_package({meant}) is called",
-                f"write `${{{meant}{suffix}}}`",
-                package.name,
-                fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{meant}{suffix}}}"),),
-            )
+            seen.add(use.name)
+            yield _diagnose_variable(package, use, meant, f"{meant}{suffix}", "variable")
             continue
         if stem.lower() not in folded or (stem in found and variables(stem) is None):
             continue
@@ -208,14 +196,15 @@ def _variables(view: View, package, found):
                 (v for v in sorted(sets) if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None
             )
         if right is not None:
-            told.add(use.name)
+            seen.add(use.name)
             if use.name in _set_by_hand(package):
                 continue
-            yield Hit(
-                use.at,
-                use.name,
-                f"find_package({meant}) sets `{right}`, so `{use.name}` is empty",
-                f"write `${{{right}}}`",
-                package.name,
-                fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{right}}}"),),
-            )
+            yield _diagnose_variable(package, use, meant, right, "other variable")
+
+
+def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Diagnostic:
+    """That a variable is empty, where another one that a find_package() sets was meant."""
+    new = f"${{{variable}}}"
+    fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", new),)
+    data = {"found": found, "variable": variable, "replacement": new}
+    return Diagnostic(use.at, use.name, package.name, data, kind, (Doubt.INCOMPLETE,), fix=fix)

@@ -21,13 +21,23 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
 _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    doubts=(Doubt.DISTURBS,),
+    texts=Text(
+        "a script that dependants run finds `{found}`, but package.xml does not export `{subject}`",
+        help="add `<build_export_depend>{subject}</build_export_depend>` to {manifest}",
+    ),
+)
 def undeclared_by_script(view: View):
     for package in view:
         if not package.build.handed_on:
@@ -35,20 +45,15 @@ def undeclared_by_script(view: View):
         declared = view.declared(package)
         # Who finds the package builds with the same tool.
         closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
-        told = {package.name}
+        reported = {package.name}
         for found in package.build.handed_on:
-            if not found.required or not view.certain(found.conditions) or found.name in told or "$" in found.name:
+            if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:
                 continue
-            told.add(found.name)
+            reported.add(found.name)
             providers = view.cmake(found.name)
             ros = bool(providers) and all(p.kind == "ros" for p in providers)
             if not ros or view.answered(providers, closure) or view.blind(package):
                 continue
             name = providers[0].name
-            yield Hit(
-                found.at,
-                name,
-                f"a script that dependants run finds `{found.name}`, and package.xml does not hand `{name}` on",
-                f"add `<build_export_depend>{name}</build_export_depend>` to {package.digest.manifest_path}",
-                package.name,
-            )
+            data = {"found": found.name, "manifest": package.digest.manifest_path}
+            yield Diagnostic(found.at, name, package.name, data)

@@ -6,22 +6,22 @@ What it does
     their own, when neither the manifest nor anything it declares brings them, directly or in turn; or when they are
     there by chance: installed for another role (a test tool brings what a node imports), or by a package that does not
     hand them on (by its CMake exports or `build_export_depend`). What a rosdep key's packages depend on comes along.
-    Reports what ament_auto is told to require under a name that the manifest does not have, commands that make tests
-    and that no declared package brings, and the one package of its repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), catkin component, pkg_check_modules(REQUIRED), include of compiled
-    code (or of an installed header that another package here compiles) or test command that is sure to miss its package
-    on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of something
-    declared is not known, no version of that in any distro does; and what ament_auto refuses. warning: tests, imports,
-    launch files, installed headers that nothing here compiles, what only comes along with another dependency, or where
-    a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces). note: conditional
-    code, examples, documentation, files that nothing compiles, and all but the first few imports and
-    launch references of a package.
+    error: an unconditional find_package(REQUIRED), component of it or of catkin, pkg_check_modules(REQUIRED), program,
+    or include of compiled code (or of an installed header that another package here compiles) that is sure to miss its
+    package on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of
+    something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
+    built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
+    along. Also what CMake needs and only dependencies to run bring, which the build farm does not install. warning:
+    tests of ROS 1, imports, launch files, installed headers that nothing here compiles, what only comes along with
+    another dependency, or where a dependency is known nowhere and may bring it (one called as interfaces are brings
+    interfaces). note: conditional code, examples, documentation, files that nothing compiles, and all but the first few
+    imports and launch references of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -35,267 +35,95 @@ Not reported
     is known to provide (they are counted as unresolved).
 """
 
-import posixpath
-import re
-
-from ...model.cmake.build import At
 from ...model.misspelling import folded, one_edit
 from ...model.view import Need, View, weight
+from ...model.workspace import Package
 from ..evidence import circular, name_to_declare, present
 from ..fix_actions import Declare
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import AT_RUN_TIME, Repeats
+from ..text import Text
+from .clean_machine import ASKED, doubts_of_chance, doubts_of_missing, is_chance
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
-LOUD = 2
 # The macros that make tests bring these headers.
-WITH_TESTS = ("gtest/", "gmock/")
-@rule(severity="error")
+_WITH_TESTS = ("gtest/", "gmock/")
+_HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
+
+
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "missing": Text("{use}, and nothing that `{package}` declares brings `{subject}`", _HELP),
+        "by chance": Text("{use}, and `{subject}` only comes along with {sources}", _HELP),
+    },
+)
 def undeclared_package(view: View):
     for package in view:
-        closure = view.closure(package)
-        declared = view.declared(package)
+        closure, declared = view.closure(package), view.declared(package)
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
             if view.answered(need.providers, declared) or (
-                need.subject.startswith(WITH_TESTS) and need.role == "test"
+                need.subject.startswith(_WITH_TESTS) and need.role == "test"
             ):
                 continue
             name = name_to_declare(view, need)
             if name is None or name == package.name:
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
-        # Whichever member of a group is there can bring anything.
-        grouped = any(d.kind == "group" for d in package.manifest.dependencies)
-        blind = grouped or view.blind(package)
-        yield from _refused(view, package)
         yield from _borrowed(view, package, borrowed)
-        yield from _test_commands(view, package, blind)
-        yield from _left_out(view, package)
-        if not missing:
-            continue
-        spoken = 0
+        # A package that leaves out many things it runs with is told of the first few.
+        repeats = Repeats(AT_RUN_TIME)
         firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
         for first, name in firsts:
-            severity = _severity(view, package, first, name, grouped or (blind and view.blind(package, name)))
-            if severity is None:
-                continue
-            if severity == "warning" and first.how in ("launch", "plugin", "shell", "import"):
-                # A package that leaves out many is told so by the first few; the rest follow as notes.
-                spoken += 1
-                severity = "warning" if spoken <= LOUD else "note"
-            yield Hit(
-                at=first.at,
-                subject=name,
-                message=f"{_how(first)}, and nothing that `{package.name}` declares brings `{name}`",
-                help=f"add `<{(tag := _tag(first, package.manifest.format))}>{name}</{tag}>` to "
-                f"{package.digest.manifest_path}",
-                package=package.name,
-                severity=severity,
-                fix=_cure(view, package, first, name) if severity != "note" else (),
-            )
-
-
-def _refused(view: View, package):
-    """What ament_auto is told to require, and refuses: what package.xml does not name among the dependencies to build
-    with. Another name for the same, such as its rosdep key, does not count. Source: ament_cmake_auto's
-    ament_auto_find_build_dependencies.cmake, the same in all distros."""
-    named = {d.name for d in package.manifest.dependencies if d.kind in ("build", "buildtool", "test")}
-    for found in package.build.found:
-        if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
-            continue
-        if view.active(found.conditions):
-            yield Hit(
-                found.at,
-                found.name,
-                f"`{found.name}` is REQUIRED of ament_auto, which refuses what `{package.name}` does not declare",
-                f"declare `{found.name}` by this name, or find_package({found.name} REQUIRED) on its own",
+            doubts = doubts_of_missing(view, package, first, name)
+            kind = "run" if first.how not in (*ASKED, "include") else first
+            severity = repeats.severity(kind, *doubts)
+            yield Diagnostic(
+                first.at,
+                name,
                 package.name,
-                severity="error" if view.certain(found.conditions) else "warning",
+                _data(package, first),
+                kind="missing",
+                severity=severity,
+                fix=_fix(view, package, first, name) if severity != "note" else (),
             )
 
 
-def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
+def _borrowed(view: View, package: Package, borrowed: dict[str, list[Need]]):
     """What a package uses and does not declare, and what it declares brings by chance: installed along with it for
     another role, or by a package that does not hand it on."""
     declared = view.declared(package)
     for name, needs in borrowed.items():
-        strong = [n for n in needs if n.certain and n.required and _is_chance(view, package, n)]
+        strong = [
+            n for n in needs if n.certain and (n.required or n.how == "program") and is_chance(view, package, n, name)
+        ]
         if not strong:
             continue
         first = min(strong, key=weight)
-        sources = [f"`{d}`" for d in declared if view.answered(first.providers, view.spread([d]))]
-        others = f" and {len(sources) - 2} others" if len(sources) > 2 else ""
-        tag = _tag(first, package.manifest.format)
-        yield Hit(
+        sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
+        yield Diagnostic(
             first.at,
             name,
-            f"{_how(first)}, and `{name}` only comes along with {' and '.join(sources[:2])}{others}",
-            f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning",
-            fix=_cure(view, package, first, name),
+            {**_data(package, first), "sources": sources},
+            kind="by chance",
+            doubts=doubts_of_chance(view, package, first),
+            fix=_fix(view, package, first, name),
         )
 
 
-def _is_chance(view: View, package, need: Need) -> bool:
-    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody."""
-    if need.role == "aside" or (need.how == "include" and not need.targets):
-        return False
-    if need.subject == package.build_type:
-        return not view.roles.has_build_tool(package, need.subject)
-    if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
-        return True
-    # Modules and nodes are not handed on: whoever has them can use them.
-    if need.how not in ("find_package", "part", "component", "pkg-config", "program", "include"):
-        return False
-    return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
+def _data(package: Package, need: Need) -> dict[str, str]:
+    return {
+        "use": _describe_use(need),
+        "tag": _tag(need, package.manifest.format),
+        "manifest": package.digest.manifest_path,
+    }
 
 
-# Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
-# ament_cmake_ros).
-_COMMANDS = {
-    "ament_add_gtest": "ament_cmake_gtest",
-    "ament_add_gtest_executable": "ament_cmake_gtest",
-    "ament_add_gmock": "ament_cmake_gmock",
-    "ament_add_gmock_executable": "ament_cmake_gmock",
-    "ament_add_pytest_test": "ament_cmake_pytest",
-    "ament_add_google_benchmark": "ament_cmake_google_benchmark",
-    "ament_add_nose_test": "ament_cmake_nose",
-    "add_launch_test": "launch_testing_ament_cmake",
-}
-
-
-def _test_commands(view: View, package, blind: bool):
-    """Commands that make tests, where neither find_package nor ament_lint_auto, which finds what is declared for tests,
-    can have brought them."""
-    if not package.build_type.startswith("ament"):
-        return
-    declared = view.declared(package)
-    told = set()
-    for use in package.build.uses:
-        name = _COMMANDS.get(use.name) if use.kind == "command" else None
-        if name is None or name in told or not view.active(use.conditions) or not present(view, name):
-            continue
-        told.add(name)
-        sure = use.conditions and all("TESTING" in c.text for c in use.conditions)
-        if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
-            continue
-        yield Hit(
-            use.at,
-            name,
-            f"`{use.name}` comes from `{name}`, and nothing that `{package.name}` declares brings it",
-            f"add `<test_depend>{name}</test_depend>` to {package.digest.manifest_path}, and "
-            f"find_package({name} REQUIRED)",
-            package.name,
-            severity="error" if not blind and sure and name not in view.may_bring(package) else "warning",
-            fix=() if declared.get(name) else (Declare(package.digest.manifest_path, name, "test_depend"),),
-        )
-
-
-def _left_out(view: View, package):
-    """The one package of its repository that a metapackage forgets."""
-    if not package.manifest.metapackage:
-        return
-    declared = view.declared(package)
-    folder = posixpath.dirname(package.path)
-    members = {p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
-    missing = [name for name in members - declared.keys() if not _APART.search(name)]
-    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
-        return
-    tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
-    yield Hit(
-        At(package.digest.manifest_path, 1),
-        missing[0],
-        f"the metapackage `{package.name}` brings every package of its repository except `{missing[0]}`",
-        f"add `<{tag}>{missing[0]}</{tag}>`, if that is not meant",
-        package.name,
-        severity="warning",
-    )
-
-
-# A metapackage that brings fewer packages says nothing of what it should.
-_MEMBERS = 3
-_APART = re.compile(
-    r"(^|_)(tests?|testing|examples?|demos?|tutorials?|benchmarks?|experimental|data|dev|simulation|gazebo)(_|$)"
-)
-
-
-def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | None:
-    if need.role == "aside":
-        return "note"
-    if not present(view, name):
-        return None  # unreleased-package says it
-    asked = need.how in ("find_package", "part", "component", "pkg-config", "program")
-    if asked and (not need.required or not any(p.sure for p in need.providers)):
-        return "note"
-    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
-        return "note"
-    if need.how in ("launch", "plugin", "shell"):
-        # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
-        wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
-        return "warning" if wanted and need.role == "run" else "note"
-    if need.role == "test" or need.how == "import":
-        return "warning" if need.required else "note"
-    if not need.certain:
-        return "note"
-    if need.how in ("program", "part"):
-        return "warning"
-    if need.how == "include" and not need.targets:
-        # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
-        passed_on = (
-            need.public
-            and need.providers[0].kind == "ros"
-            and not need.subject.startswith(WITH_TESTS)
-        )
-        if not passed_on or circular(view, package, name):
-            return "note"
-        return "error" if _stops_another(view, package, need) else "warning"
-    if blind or view.answered(need.providers, view.may_bring(package)):
-        return "warning"
-    if need.how == "include" and not any(
-        view.certain(target.conditions) for target in package.build.targets if target.name in need.targets
-    ):
-        return "warning"  # installed in any case, and compiled only under a condition
-    first = need.providers[0]
-    if first.kind == "system" and view.sealed(package):
-        return "warning"
-    # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
-    guessed = need.how == "include" and not first.sure
-    if guessed and first.kind == "system":
-        return "warning"
-    if guessed and not _generated(view, first.name, need.subject):
-        return "warning" if view.has_released_header(first.name, need.subject) is False else "error"
-    return "error"
-
-
-# What a package that generates messages hands on to whoever uses them.
-_RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
-_OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
-
-
-def _generated(view: View, name: str, header: str) -> bool:
-    """True for the header of an interface, which no tree of the released package shows."""
-    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.installed_with(name))
-
-
-def _stops_another(view: View, package, need: Need) -> bool:
-    """True when another package of the workspace compiles the installed header, and nothing brings it what that
-    includes either."""
-    for other in view.everyone():
-        if other.name == package.name:
-            continue
-        for include in other.digest.includes:
-            if include.role != "build" or not include.targets or not view.certain(include.conditions):
-                continue
-            if need.subject not in view.outward((include.path,))[0] or view.blind(other):
-                continue
-            if not view.answered(need.providers, view.may_bring(other)):
-                return True
-    return False
-
-
-def _how(need: Need) -> str:
+def _describe_use(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
         "part": f"CMake looks for the component `{need.subject}`",
@@ -311,8 +139,8 @@ def _how(need: Need) -> str:
     }[need.how]
 
 
-def _cure(view: View, package, need: Need, name: str) -> tuple[Declare, ...]:
-    """Nothing where the manifest has the name with a slip in it, which is another rule's to cure."""
+def _fix(view: View, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
+    """Nothing where the manifest has the name with a letter wrong, which another rule repairs."""
     if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
         return ()
     if circular(view, package, name):

@@ -8,7 +8,8 @@ Why it breaks
     works by what else happens to be installed.
 
 Severity
-    warning.
+    error where a target that is built in any case compiles the include; warning for tests of ROS 1 and for targets that
+    are built under a condition.
 
 Example
     #include <tf2/utils.h>      // includes tf2_geometry_msgs, which tf2 does not depend on; package.xml has only tf2
@@ -22,35 +23,44 @@ Not reported
 """
 
 from ...model.view import Need, View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .clean_machine import doubts_of_compiled
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "`{include}` includes `{header}`, and nothing that `{package}` declares brings `{subject}`",
+        help="add `<depend>{subject}</depend>` to {manifest}",
+    ),
+)
 def undeclared_through_header(view: View):
     for package in view:
         if not package.digest.includes or view.blind(package):
             continue
         closure = view.may_bring(package)
-        told: set[str] = set()
+        reported: set[str] = {package.name}
         for need in view.weighed(package):
             if need.how != "include" or not need.certain or not view.built(need.role) or not need.targets:
                 continue
             if not view.answered(need.providers, closure):
-                continue  # that it is missing itself is told elsewhere
-            for name, header in _led_to(view, need):
-                if name in told or name == package.name or view.answered(view.header(header), closure):
+                continue  # undeclared-package reports that
+            for name, header in _follow(view, need):
+                if name in reported or view.answered(view.header(header), closure):
                     continue
-                told.add(name)
-                yield Hit(
+                reported.add(name)
+                yield Diagnostic(
                     need.at,
                     name,
-                    f"`{need.subject}` includes `{header}`, and nothing that `{package.name}` declares brings `{name}`",
-                    f"add `<depend>{name}</depend>` to {package.digest.manifest_path}",
                     package.name,
+                    {"include": need.subject, "header": header, "manifest": package.digest.manifest_path},
+                    doubts=doubts_of_compiled(view, package, need),
                 )
 
 
-def _led_to(view: View, need: Need) -> list[tuple[str, str]]:
+def _follow(view: View, need: Need) -> list[tuple[str, str]]:
     """The packages of ROS that a released header leads to, besides its own, each with the first header of it."""
     known = view.worked_out.get(("led to", need.subject))
     if known is None:

@@ -8,8 +8,9 @@ Why it breaks
     The package builds from its own tree; whoever includes the installed header gets "No such file or directory".
 
 Severity
-    warning, note where no dependant of the workspace includes headers of the package and the including header lies in
-    a folder of implementation details.
+    error where another package of the workspace compiles the including header and each package is installed into a
+    place that others look in (ROS 2); warning; note where no dependant of the workspace includes headers of the package
+    and the including header lies in a folder of implementation details.
 
 Example
     install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h")   # and a.h includes "p/b.hpp"
@@ -27,12 +28,23 @@ import re
 from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
 from ...model.view import View
-from ..rule import Hit, rule
+from ...model.workspace import Package
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .dependants import compiled_elsewhere
 
 _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "`{header}` is installed and includes `{subject}`, which is not installed",
+        help="install `{file}`, or include it from sources alone",
+    ),
+)
 def uninstalled_header(view: View):
     for package in view:
         if not package.build.files or not package.digest.public_headers:
@@ -41,27 +53,30 @@ def uninstalled_header(view: View):
         if not installed.known:
             continue
         made = set(package.build.made)
-        told = set()
+        reported = set()
         written = dict(package.digest.written_inner)
         for path, inner in package.digest.inner:
             place = installed.headers.get(path)
             if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
                 continue
-            lost = [to for to in inner if to not in installed.headers and to not in told and not to.endswith(".in")]
+            lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
             for to in lost if lost else ():
                 include = _include_of(view, written.get(path, ()), to)
                 if include is None or to in made or _answered(installed.headers, place, include.path):
                     continue
-                told.add(to)
-                dependants = package.name in view.workspace.includers
-                yield Hit(
-                    include.at,
-                    include.path,
-                    f"`{posixpath.basename(path)}` is installed and includes `{include.path}`, which is not",
-                    f"install `{to[len(package.path) :].lstrip('/')}`, or include it from sources alone",
-                    package.name,
-                    severity="note" if _DETAIL.search(path) and not dependants else "warning",
-                )
+                reported.add(to)
+                data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
+                doubts = _doubts(view, package, path)
+                yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
+
+
+def _doubts(view: View, package: Package, path: str) -> tuple[Doubt, ...]:
+    """Of an installed header that lacks one of its own package: whoever includes it stops."""
+    if _DETAIL.search(path) and package.name not in view.workspace.includers:
+        return (Doubt.UNCOMPILED,)
+    # Catkin's devel space shows dependants the folder of the sources.
+    stops = view.target.ros == 2 and compiled_elsewhere(view, package, path)
+    return () if stops else (Doubt.DISTURBS,)
 
 
 def _include_of(view: View, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:

@@ -10,7 +10,7 @@ Why it breaks
     it worked as long as another package happened to export the library.
 
 Severity
-    warning.
+    error for programs that include headers of gtest or gmock; warning.
 
 Example
     add_executable(loader test/loader.cpp)        # includes gtest/gtest.h
@@ -20,7 +20,7 @@ Use instead
     target_link_libraries(loader arm gtest)
 
 Not reported
-    Targets that are given anything of which it cannot be told what it brings; includes in headers; static libraries,
+    Targets that are given anything of which it cannot be seen what it brings; includes in headers; static libraries,
     and shared ones that are not installed: the programs of the package bring what they lack.
 """
 
@@ -28,26 +28,23 @@ from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
-from ..rule import Hit, rule
-from .unlinked import BRING_NOTHING, Exported, linked_items, linked_packages, plain, stem_of
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, plain, stem_of
+from .library_links import COMPILED
 
-# How the include paths of compiled libraries begin, and a word of every name that each is linked by, without
-# separators. Source: the libraries' documentation.
-_COMPILED = (
-    ("yaml-cpp/", "yamlcpp"),
-    ("tinyxml2.h", "tinyxml2"),
-    ("tinyxml.h", "tinyxml"),
-    ("json/json.h", "jsoncpp"),
-    ("jsoncpp/", "jsoncpp"),
-    ("curl/curl.h", "curl"),
-    ("glog/logging.h", "glog"),
-    ("libusb-1.0/", "usb"),
-    ("gtest/gtest.h", "gtest"),
-    ("gmock/gmock.h", "gmock"),
+_COMPILED = (*COMPILED, ("gtest/gtest.h", "gtest"), ("gmock/gmock.h", "gmock"))
+
+
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "`{target}` compiles `{header}` but links nothing that brings the library",
+        "link the library to `{target}` with target_link_libraries()",
+    ),
 )
-
-
-@rule(severity="warning")
 def unlinked_library(view: View):
     for package in view:
         if package.build.unresolved or package.build_type not in ("catkin", "ament_cmake"):
@@ -62,33 +59,34 @@ def unlinked_library(view: View):
             continue
         targets = {t.name: t for t in package.build.targets}
         installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
-        told: set[tuple[str, str]] = set()
+        seen: set[tuple[str, str]] = set()
         for include, word in includes:
             for name in include.targets:
                 target = targets.get(name)
-                if target is None or include.at.path not in target.sources or (word, name) in told:
+                if target is None or include.at.path not in target.sources or (word, name) in seen:
                     continue
                 if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
                     continue
                 if not view.certain(target.conditions):
                     continue
-                if _brought(view, package, targets, target, include.path, word):
+                if _is_brought(view, package, name, include.path, word):
                     continue
-                told.add((word, name))
-                yield Hit(
-                    include.at,
-                    f"{include.path.partition('/')[0].removesuffix('.h')}",
-                    f"`{name}` compiles `{include.path}` and is linked to nothing that brings the library",
-                    f"link the library to `{name}` with target_link_libraries()",
-                    package.name,
-                )
+                seen.add((word, name))
+                subject = include.path.partition("/")[0].removesuffix(".h")
+                data = {"target": name, "header": include.path}
+                yield Diagnostic(include.at, subject, package.name, data, doubts=_doubts(target, word))
 
 
-def _brought(
-    view: View, package: Package, targets: dict[str, BuildTarget], target: BuildTarget, header: str, word: str
-) -> bool:
+def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
+    """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
+    what needs no library."""
+    sure = target.kind == "executable" and word in ("gtest", "gmock")
+    return () if sure else (Doubt.INCOMPLETE,)
+
+
+def _is_brought(view: View, package: Package, target: str, header: str, word: str) -> bool:
     """Whether anything that a target is given links the library of a header, or may."""
-    items = linked_items(package, targets, target)
+    items = list_linked(package, target)
     if items is None or any(word.removesuffix("2") in plain(item) for item in items):
         return True
     if word == "gmock" and any("gtest" in plain(item) for item in items):
@@ -104,7 +102,7 @@ def _brought(
 
 
 def _may_bring_anything(view: View, package: Package, item: str) -> bool:
-    """Whether it cannot be told what an item brings: it is of no package of ROS and of no library that is known to come
+    """Whether it cannot be seen what an item brings: it is of no package of ROS and of no library that is known to come
     alone. A variable that no package found can set is empty."""
     name = stem_of(item) if "$" in item else package_of(item)
     if name in BRING_NOTHING or view.is_package(name) or name.startswith(("Qt5", "Qt6")):

@@ -31,23 +31,48 @@ import re
 from ...model.view import View
 from ..evidence import circular
 from ..fix_actions import Declare, Remove
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
 _FOR_RUN = frozenset({"exec", "build_export"})
 
 
-@rule(severity="warning")
+_AS_DEPEND = "declare it as `<{tag}>`"
+
+
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "build, for tests": Text("`{subject}` is needed to build but is declared only for tests", _AS_DEPEND),
+        "build, to run": Text("`{subject}` is needed to build but is declared only to run", _AS_DEPEND),
+        "run, for tests": Text("`{subject}` is needed to run but is declared only for tests", _AS_DEPEND),
+        "run, to build": Text("`{subject}` is needed to run but is declared only to build", _AS_DEPEND),
+        "public": Text("an installed header includes `{header}`, but dependants do not get `{subject}`", _AS_DEPEND),
+        "linked": Text(
+            "dependants link `{library}` along with the exported library, but do not get `{subject}`", _AS_DEPEND
+        ),
+        "bare": Text(
+            "`{declared}` brings no headers, but `{header}` needs those of `{subject}`", "declare `{subject}`"
+        ),
+        "public bare": Text(
+            "an installed header includes `{header}`, but dependants get `{declared}`, which has no headers",
+            "declare `{subject}` as `<{tag}>`",
+        ),
+    },
+)
 def wrong_dependency_kind(view: View):
     for package in view:
         declared = view.declared(package)
         build, exported, run = None, None, None
-        told = set()
+        seen, old = set(), package.manifest.format == 1
         yield from _linked_on(view, package, declared)
         yield from _without_headers(view, package, declared)
         for need in view.weighed(package):
             own = [p.name for p in need.providers if p.name in declared]
-            if not own or not need.certain or not need.required or any(n in told for n in own):
+            if not own or not need.certain or not need.required or any(n in seen for n in own):
                 continue
             kinds = set().union(*(declared[n] for n in own))
             name = own[0]
@@ -58,22 +83,14 @@ def wrong_dependency_kind(view: View):
                     )
                     if view.answered(need.providers, build):
                         continue
-                    if package.manifest.format == 1 or kinds <= {"exec"}:
-                        # rosdep installs run dependencies along, so only the order of a clean build suffers
-                        severity = "warning" if name in view.workspace.packages or kinds == {"test"} else "note"
-                    else:
-                        severity = "warning"
-                    told.add(name)
-                    kind = "for tests" if kinds == {"test"} else "for running"
-                    yield Hit(
-                        need.at,
-                        name,
-                        f"`{name}` is needed to build and declared only {kind}",
-                        f"declare it as `<{'build_depend' if package.manifest.format == 1 else 'depend'}>`",
-                        package.name,
-                        severity=severity,
-                        fix=_cure(view, package, name, "depend", kinds),
-                    )
+                    # rosdep installs run dependencies along, so only the order of a clean build suffers
+                    comes = (old or kinds <= {"exec"}) and name not in view.workspace.packages and kinds != {"test"}
+                    doubts = (Doubt.DISPENSABLE if comes else Doubt.LATE,)
+                    seen.add(name)
+                    kind = "build, for tests" if kinds == {"test"} else "build, to run"
+                    data = {"tag": "build_depend" if old else "depend"}
+                    fix = _declare(view, package, name, "depend", kinds)
+                    yield Diagnostic(need.at, name, package.name, data, kind, doubts, fix=fix)
                 elif need.public and need.how == "include" and not kinds & {"build_export", "exec"}:
                     exported = (
                         exported
@@ -84,29 +101,19 @@ def wrong_dependency_kind(view: View):
                     )
                     if view.answered(need.providers, exported):
                         continue
-                    told.add(name)
-                    yield Hit(
-                        need.at,
-                        name,
-                        f"an installed header includes `{need.subject}` and dependants do not get `{name}`",
-                        f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
-                        package.name,
-                        fix=_cure(view, package, name, "depend", kinds),
-                    )
+                    seen.add(name)
+                    data = {"header": need.subject, "tag": "run_depend" if old else "depend"}
+                    fix = _declare(view, package, name, "depend", kinds)
+                    yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix)
             elif need.role == "run" and need.how in ("import", "launch") and not kinds & _FOR_RUN:
                 run = run if run is not None else view.spread(n for n, k in declared.items() if k & _FOR_RUN)
                 if view.answered(need.providers, run):
                     continue
-                told.add(name)
-                yield Hit(
-                    need.at,
-                    name,
-                    f"`{name}` is needed to run and declared only for {'tests' if kinds == {'test'} else 'building'}",
-                    f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'exec_depend'}>`",
-                    package.name,
-                    severity="warning" if kinds != {"test"} else "note",
-                    fix=_cure(view, package, name, "exec_depend", kinds),
-                )
+                seen.add(name)
+                kind, doubt = ("for tests", Doubt.DISPENSABLE) if kinds == {"test"} else ("to build", Doubt.LATE)
+                data = {"tag": "run_depend" if old else "exec_depend"}
+                fix = _declare(view, package, name, "exec_depend", kinds)
+                yield Diagnostic(need.at, name, package.name, data, f"run, {kind}", (doubt,), fix=fix)
 
 
 def _linked_on(view: View, package, declared):
@@ -130,14 +137,10 @@ def _linked_on(view: View, package, declared):
         if name in exported:
             continue
         place = next(d for d in package.manifest.dependencies if d.name == name)
-        yield Hit(
-            view.manifest_place(package, place),
-            name,
-            f"dependants link `{item}` along with the exported library, and do not get `{name}`",
-            f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
-            package.name,
-            fix=_cure(view, package, name, "depend", kinds),
-        )
+        data = {"library": item, "tag": "run_depend" if package.manifest.format == 1 else "depend"}
+        fix = _declare(view, package, name, "depend", kinds)
+        at = view.manifest_place(package, place)
+        yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix)
 
 
 def _without_headers(view: View, package, declared):
@@ -147,13 +150,13 @@ def _without_headers(view: View, package, declared):
         for name in declared
         if name.startswith("lib") and (debian := view.debian(name)) and not any(d.endswith("-dev") for d in debian)
     }
-    told = set()
+    seen = set()
     for need in view.weighed(package) if bare else ():
         if need.how == "include" and need.public and need.certain:
-            yield from _handed_on_bare(view, package, declared, bare, need, told)
+            yield from _handed_on_bare(view, package, declared, bare, need, seen)
         if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
             continue
-        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in told:
+        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in seen:
             continue
         wanted = {
             re.sub(r"(-all)?-dev\Z", "", debian)
@@ -166,16 +169,10 @@ def _without_headers(view: View, package, declared):
         right = next((p.name for p in need.providers if view.available(p.name)), None)
         if name is None or right is None:
             continue
-        told.add(need.providers[0].name)
+        seen.add(need.providers[0].name)
         place = next(d for d in package.manifest.dependencies if d.name == name)
-        yield Hit(
-            view.manifest_place(package, place),
-            right,
-            f"`{name}` brings no headers, and `{need.subject}` needs those of `{right}`",
-            f"declare `{right}`",
-            package.name,
-            severity="error" if _lacks(view, package, need) else "warning",
-        )
+        data, doubts = {"declared": name, "header": need.subject}, (_lacks(view, package, need) or Doubt.INCOMPLETE,)
+        yield Diagnostic(view.manifest_place(package, place), right, package.name, data, "bare", doubts)
 
 
 def _lacks(view: View, package, need) -> bool:
@@ -187,10 +184,10 @@ def _lacks(view: View, package, need) -> bool:
     return not view.answered(need.providers, view.may_bring(package))
 
 
-def _handed_on_bare(view: View, package, declared, bare, need, told):
+def _handed_on_bare(view: View, package, declared, bare, need, seen):
     """A library whose headers are declared for building, and without headers for whoever includes the public header."""
     right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
-    if right is None or right in told:
+    if right is None or right in seen:
         return
     stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.debian(right)}
     name = next(
@@ -198,16 +195,13 @@ def _handed_on_bare(view: View, package, declared, bare, need, told):
     )
     if name is None or name.startswith("libboost") or not declared[name] & _FOR_RUN:
         return
-    told.add(right)
+    seen.add(right)
     place = next(d for d in package.manifest.dependencies if d.name == name)
-    yield Hit(
-        view.manifest_place(package, place),
-        right,
-        f"an installed header includes `{need.subject}`, and dependants get `{name}`, which has no headers",
-        f"declare `{right}` as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
-        package.name,
-        fix=_cure(view, package, right, "depend", declared[right]),
-    )
+    tag = "run_depend" if package.manifest.format == 1 else "depend"
+    data = {"declared": name, "header": need.subject, "tag": tag}
+    fix = _declare(view, package, right, "depend", declared[right])
+    at = view.manifest_place(package, place)
+    yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix)
 
 
 def _same_library(installed: str, stem: str) -> bool:
@@ -216,7 +210,7 @@ def _same_library(installed: str, stem: str) -> bool:
     return len(stem) > 4 and installed.startswith(stem) and (not rest or rest[0] in "-0123456789.")
 
 
-def _cure(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
+def _declare(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
     """What is declared for tests alone is declared anew, since `depend` beside `test_depend` says one thing twice."""
     path = package.digest.manifest_path
     if circular(view, package, name):

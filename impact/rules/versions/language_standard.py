@@ -29,7 +29,9 @@ from ...model.view import View
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 # Macros that come with the build tools, and set no standard.
 _HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_message", "add_service", "add_action",
@@ -37,7 +39,21 @@ _HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_me
              "protobuf_", "install_", "check_", "find_", "nodelet_", "orocos_", "configure_")  # fmt: skip
 
 
-@rule(severity="error")
+_HELP = "set(CMAKE_CXX_STANDARD {needed})"
+_NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"
+
+
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "set": Text(f"C++{{standard}} is set, but {_NEEDS}", _HELP),
+        "flag": Text(f"C++{{standard}} is set by a flag, but {_NEEDS}", _HELP),
+        "default": Text(
+            f"no C++ standard is set and the compiler of {{platform}} defaults to C++{{standard}}, but {_NEEDS}", _HELP
+        ),
+    },
+)
 def language_standard(view: View):
     default = default_standard(view.target)
     for package in view:
@@ -73,19 +89,13 @@ def _ros1(view: View, package, default: int | None):
             continue  # often beside std::experimental, under a test of the compiler
         told.add(need.package)
         own = need.package in view.workspace.packages
-        written = (
-            f"C++{fixed[0] % 100:02d} is set"
-            if fixed
-            else f"no C++ standard is set and {view.target.platform}'s compiler takes C++{have % 100:02d}"
-        )
-        yield Hit(
-            fixed[1] if fixed else include.at,
-            f"-std=c++{fixed[0] % 100:02d}" if fixed else f"-std=c++{need.standard}",
-            f"{written}, and {_what(include.path, need)} needs C++{need.standard}",
-            f"set(CMAKE_CXX_STANDARD {need.standard})",
-            package.name,
-            severity="error" if need.sure and sure and not own else "warning",
-        )
+        known = (need.sure and sure and not own) or Doubt.INCOMPLETE
+        data = _data(include.path, need, fixed[0] if fixed else have)
+        if fixed:
+            yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "set", (known,))
+        else:
+            data["platform"] = view.target.platform
+            yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", (known,))
 
 
 def _ros2(view: View, package, default: int | None):
@@ -106,8 +116,8 @@ def _ros2(view: View, package, default: int | None):
         if need is None or need.package in view.workspace.packages:
             continue
         if standard_year(need.standard) > have and default >= standard_year(need.standard):
-            severity = "error" if need.sure else "warning"
-            where = ""
+            doubts = (need.sure or Doubt.INCOMPLETE,)
+            horizon = ""
         elif (
             newest is not None
             and (later := needed_standard(newest, include.path))
@@ -116,24 +126,28 @@ def _ros2(view: View, package, default: int | None):
                 and (default_standard(newest) or 0) >= standard_year(later.standard)
             )
         ):
-            need, severity, where = later, "warning", f" in {view.horizon}"
+            need, doubts, horizon = later, (Doubt.UPCOMING,), view.horizon
         else:
             continue
-        yield Hit(
-            fixed[1],
-            f"-std=c++{fixed[0] % 100:02d}",
-            f"C++{fixed[0] % 100:02d} is set by a flag, and {_what(include.path, need)}{where} needs "
-            f"C++{need.standard}",
-            f"set(CMAKE_CXX_STANDARD {need.standard})",
-            package.name,
-            severity=severity,
-        )
+        data = _data(include.path, need, fixed[0], horizon)
+        yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "flag", doubts)
         return
 
 
-def _what(path: str, need: NeededStandard) -> str:
-    owner = " ".join(n for n in (need.package, need.version) if n)
-    return f"`{path}` of {owner}" if owner else f"`<{path}>`"
+def _data(path: str, need: NeededStandard, standard: int, horizon: str = "") -> dict[str, str | int]:
+    """What the texts name. standard: as CMake writes it (98, 11), or its year."""
+    return {
+        "header": path if need.package else f"<{path}>",
+        "upstream": need.package,
+        "version": need.version,
+        "horizon": horizon,
+        "needed": need.standard,
+        "standard": f"{standard % 100:02d}",
+    }
+
+
+def _flag(standard: int) -> str:
+    return f"-std=c++{standard % 100:02d}"
 
 
 def _of_library(path: str) -> NeededStandard | None:

@@ -24,20 +24,31 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.target import Target
 from ..rule import rule
+from ..text import Text
 from .python_files import Refused, report_refused
 
 
-@rule(scope="target", severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "python 2": Text(
+            "{subject} is a syntax error in Python {version}[[ ({horizon})]]", "use syntax that Python 3 accepts"
+        ),
+        "newer": Text(
+            "{subject} needs Python {needs}, but the target has {version}",
+            "use syntax that the Python of every target accepts",
+        ),
+    },
+)
 def python_version(view: View):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         reported = set()
         for use in package.digest.syntax:
             if use.needs == 2 and use.at.path not in reported:
                 reported.add(use.at.path)
-                message = f"{use.what} is a syntax error in Python 3.{target.python}"
-                yield Refused(use, use.what, message, "use syntax that Python 3 accepts")
+                yield Refused(use, use.what, "python 2")
             elif use.needs > max(2, target.python) and view.target.python_major >= 3:
-                message = f"{use.what} needs Python 3.{use.needs}, but the target has 3.{target.python}"
-                yield Refused(use, use.what, message, "use syntax that the Python of every target accepts")
+                yield Refused(use, use.what, "newer", use.needs)
 
     yield from report_refused(view, find)

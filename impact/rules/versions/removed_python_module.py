@@ -26,14 +26,23 @@ from collections.abc import Iterator
 
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for
+from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
 from ...targets.target import Target
 from ..rule import rule
 from ..severity import Doubt
+from ..text import Text
 from .python_files import Refused, report_refused
 
 
-@rule(scope="target", severity="error", group="python-version")
+@rule(
+    scope="target",
+    severity="error",
+    group="python-version",
+    texts=Text(
+        "the standard library of Python {version} does not have `{subject}`[[ ({horizon})]]",
+        "use its successor[[ `{replacement}`]], with an except branch if both versions must work",
+    ),
+)
 def removed_python_module(view: View):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for item in package.digest.imports:
@@ -41,8 +50,7 @@ def removed_python_module(view: View):
                 continue
             if ever_stdlib(item.module) and not stdlib(item.module, target.python, 3):
                 doubts = (Doubt.LATE,) if item.lazy or stood_in_for(item.module) else ()
-                message = f"the standard library of Python 3.{target.python} does not have `{item.module}`"
-                advice = "use its successor, with an except branch if both versions must work"
-                yield Refused(item, item.module, message, advice, doubts, item.conditions)
+                new = successor_of(item.module)
+                yield Refused(item, item.module, replacement=new, doubts=doubts, conditions=item.conditions)
 
     yield from report_refused(view, find)

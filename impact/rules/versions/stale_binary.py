@@ -39,7 +39,8 @@ from ....edges.console import counted
 from ...model.build_order import build_order
 from ...model.cmake.build import At
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 if TYPE_CHECKING:
     from ...model.install_space import Binary, Installed
@@ -56,7 +57,26 @@ class _Missing(NamedTuple):
     symbols: int = -1
 
 
-@rule(scope="install_space", severity="error")
+_HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
+
+
+@rule(
+    scope="install_space",
+    severity="error",
+    texts={
+        "symbol": Text(
+            "`{subject}`[[ of `{library}`]][[ and {symbols}]], needed by `{file}`[[ and {files}]], not found in any "
+            "library that is loaded",
+            _HELP,
+        ),
+        "gone": Text(
+            "`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], was removed: {there}", _HELP
+        ),
+        "missing": Text(
+            "`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], is not available: {there}", _HELP
+        ),
+    },
+)
 def stale_binary(view: View, installed: Installed, shelf: Shelf):
     askers: dict[_Missing, dict[str, list[Binary]]] = {}
     for binary in installed.binaries:
@@ -72,7 +92,10 @@ def stale_binary(view: View, installed: Installed, shelf: Shelf):
         packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
             at = _place(view, package, binaries, installed)
-            yield Hit(at, missing.subject, _message(missing, binaries, shelf), _help(missing, packages, shelf), package)
+            data = {**_data(missing, binaries, shelf), **_remedy(missing, packages, shelf)}
+            gone = shelf.gone and missing.there
+            kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
+            yield Diagnostic(at, missing.subject, package, data, kind)
 
 
 def _missing(view: View, binary: Binary, installed: Installed, shelf: Shelf) -> Iterator[_Missing]:
@@ -95,28 +118,20 @@ def _missing(view: View, binary: Binary, installed: Installed, shelf: Shelf) -> 
         yield _Missing(lost.name, lost.library, "", lost.more)
 
 
-def _message(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> str:
-    first = min(binary.path for binary in binaries)
-    more = f" and {counted(len(binaries) - 1, 'more file')}" if len(binaries) > 1 else ""
-    of = missing.library if missing.library != missing.subject else ""
-    what = f"`{missing.subject}`" + (f" of `{of}`" if of else "")
-    if missing.symbols >= 0:
-        others = f" and {counted(missing.symbols, 'more symbol')}" if missing.symbols else ""
-        told = "are gone: no library that is loaded has them" if others else "is gone: no library that is loaded has it"
-        return f"{what}{others}, which `{first}`{more} need{'' if more else 's'}, {told}"
-    gone = "is gone" if shelf.gone and missing.there else "is not there"
-    there = f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing
-    return f"{what}, which `{first}`{more} need{'' if more else 's'}, {gone}: {there}"
+def _data(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> dict[str, str]:
+    more = len(binaries) - 1
+    return {
+        "file": min(binary.path for binary in binaries),
+        "files": counted(more, "more file") if more else "",
+        "library": missing.library if missing.library != missing.subject else "",
+        "symbols": counted(missing.symbols, "more symbol") if missing.symbols > 0 else "",
+        "there": f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing,
+    }
 
 
-def _help(missing: _Missing, packages: list[str], shelf: Shelf) -> str:
-    rebuild = f"rebuild {', '.join(packages)}" if packages else "rebuild it"
-    if len(packages) > 1:
-        rebuild += " in this order"
-    package = shelf.package(missing.subject)
-    if package:
-        return f"install `{package}`, or {rebuild}"
-    return rebuild
+def _remedy(missing: _Missing, packages: list[str], shelf: Shelf) -> dict[str, str]:
+    order = " in this order" if len(packages) > 1 else ""
+    return {"debian": shelf.package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
 
 
 def _place(view: View, package: str, binaries: list[Binary], installed: Installed) -> At:

@@ -360,6 +360,24 @@ class DistroTarget(Target):
         chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
         return chosen[1] or "", chosen[2] or ""
 
+    def later_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with the next later version whose manifest is known here, where this very version's is
+        not known: what dependencies() may lack."""
+        version = self.version(package)
+        if version is None:
+            return frozenset()
+        known = {
+            tuple(version_key(of)): entries or ""
+            for of, entries in self._data.rows(
+                "SELECT m.version, d.entries FROM manifest m JOIN package p ON p.id = m.package"
+                " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
+                (package, self._id),
+            )
+        }
+        wanted = tuple(version_key(version))
+        later = min((key for key in known if key > wanted), default=None)
+        return frozenset() if wanted in known or later is None else _come_along(known[later])
+
     def _read_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         manifest = self._manifest(package)
         if manifest is None:
@@ -417,8 +435,7 @@ class DistroTarget(Target):
             " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
             (package, self.ros),
         )
-        lines = (line.split("\t") for (entries,) in rows for line in entries.splitlines())
-        return frozenset(fields[0] for fields in lines if not _COMES_ALONG.isdisjoint(fields[1]))
+        return frozenset().union(*(_come_along(entries) for (entries,) in rows))
 
     def known_build_types(self, package: str) -> frozenset[str]:
         """Every build type that a package is known to have had in a distro of this generation."""
@@ -569,20 +586,6 @@ class DistroTarget(Target):
             self._all_keys = found
         return self._all_keys
 
-    def declared_ok(self, name: str) -> str:
-        """How a name in a manifest stands here.
-
-        `released` (a package of this target), `key` (rosdep resolves it here), `known-elsewhere` (a package or key of
-        another distro, day or platform), `unknown` (never seen in public).
-        """
-        if name in self.released_names():
-            return "released"
-        if self.resolve(name) is not None:
-            return "key"
-        if self.ever_released(name) or self.known_key(name):
-            return "known-elsewhere"
-        return "unknown"
-
     # Platform libraries
 
     def _libraries(self) -> dict[str, Library]:
@@ -626,29 +629,10 @@ class DistroTarget(Target):
         """True for ROS packages whose version was given for this machine, and is not the distro's."""
         return package in self._overrides
 
-    def library_source(self, name: str) -> str:
-        """Where a platform library's version is from, in words; empty when the version is not known."""
-        cell = self._libraries().get(library_name(name))
-        if cell is None:
-            return ""
-        row = self._data.row("SELECT text FROM source_note WHERE id = ?", (cell.source,))
-        return row[0] if row else cell.source
-
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
         own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
         return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
-
-    def library_since(self, name: str) -> tuple[str, str] | None:
-        """(platform, version) of the oldest platform of the same system that has this library in the same version."""
-        wanted, version = library_name(name), self.library(name)
-        if version is None:
-            return None
-        order = _platform_order()
-        system = split_platform(self.platform)[0]
-        rows = self._data.rows("SELECT platform FROM library WHERE name = ? AND version = ?", (wanted, version))
-        same = sorted((p for (p,) in rows if p.startswith(system + " ")), key=lambda p: order.get(p, len(order)))
-        return (same[0], version) if same else (self.platform, version)
 
     # Known upstream changes
 
@@ -674,11 +658,10 @@ class DistroTarget(Target):
     def changes(self) -> ChangeTable:
         if self._changes is None:
             from ..changes import changes_in_force
-            from ..uses import uses_in_force
 
             self._changes = _tables.get(self.identity()) if self._data is snapshots.default() else None
             if self._changes is None:
-                self.set_changes((*changes_in_force(self), *uses_in_force(self)))
+                self.set_changes(changes_in_force(self))
         return self._changes
 
 
@@ -694,6 +677,12 @@ _COMPARE = {
 
 
 _TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
+
+
+def _come_along(entries: str) -> frozenset[str]:
+    """The names among the stored entries of a manifest that are installed along with it, conditions aside."""
+    fields = (line.split("\t") for line in entries.splitlines())
+    return frozenset(name for name, letters, *_ in fields if not _COMES_ALONG.isdisjoint(letters))
 
 
 def _compared(term: str, variables: Mapping[str, str]) -> bool | None:

@@ -33,123 +33,37 @@ _ADDED = {"zipapp": 5, "typing": 5, "secrets": 6, "contextvars": 7, "dataclasses
           "tomllib": 11, "_colorize": 13, "annotationlib": 14, "compression": 14}  # fmt: skip
 """Module to the minor version of Python 3 that brought it."""
 
-REMOVED: dict[str, tuple[int, str]] = {
-    "formatter": (10, ""),
-    "parser": (10, "ast"),
-    "symbol": (10, ""),
-    "macpath": (8, ""),
-    "dummy_threading": (9, "threading"),
-    "binhex": (11, ""),
-    "asynchat": (12, "asyncio"),
-    "asyncore": (12, "asyncio"),
-    "distutils": (12, "setuptools"),
-    "imp": (12, "importlib"),
-    "smtpd": (12, "aiosmtpd"),
-    "aifc": (13, ""),
-    "audioop": (13, ""),
-    "cgi": (13, "urllib.parse"),
-    "cgitb": (13, "traceback"),
-    "chunk": (13, ""),
-    "crypt": (13, "hashlib"),
-    "imghdr": (13, "filetype"),
-    "lib2to3": (13, ""),
-    "mailcap": (13, "mimetypes"),
-    "msilib": (13, ""),
-    "nis": (13, ""),
-    "nntplib": (13, ""),
-    "ossaudiodev": (13, ""),
-    "pipes": (13, "subprocess"),
-    "sndhdr": (13, "filetype"),
-    "spwd": (13, ""),
-    "sunau": (13, ""),
-    "telnetlib": (13, "telnetlib3"),
-    "uu": (13, "base64"),
-    "xdrlib": (13, ""),
+_REMOVED = {
+    8: "macpath",
+    9: "dummy_threading=threading",
+    10: "formatter parser=ast symbol",
+    11: "binhex",
+    12: "asynchat=asyncio asyncore=asyncio distutils=setuptools imp=importlib smtpd=aiosmtpd",
+    13: """
+        aifc audioop cgi=urllib.parse cgitb=traceback chunk crypt=hashlib imghdr=filetype lib2to3 mailcap=mimetypes
+        msilib nis nntplib ossaudiodev pipes=subprocess sndhdr=filetype spwd sunau telnetlib=telnetlib3 uu=base64 xdrlib
+    """,
 }
-"""Module to the minor version of Python 3 that lacks it, and what serves instead (empty: nothing)."""
+"""The minor version of Python 3 that lacks modules first, and these with what serves instead."""
 
-PYTHON_2_ONLY: dict[str, str] = {
-    "BaseHTTPServer": "http.server",
-    "Bastion": "",
-    "CGIHTTPServer": "http.server",
-    "ConfigParser": "configparser",
-    "Cookie": "http.cookies",
-    "DocXMLRPCServer": "xmlrpc.server",
-    "HTMLParser": "html.parser",
-    "MimeWriter": "email",
-    "Queue": "queue",
-    "ScrolledText": "tkinter.scrolledtext",
-    "SimpleHTTPServer": "http.server",
-    "SimpleXMLRPCServer": "xmlrpc.server",
-    "SocketServer": "socketserver",
-    "StringIO": "io",
-    "Tix": "tkinter.tix",
-    "Tkconstants": "tkinter.constants",
-    "Tkinter": "tkinter",
-    "UserDict": "collections",
-    "UserList": "collections",
-    "UserString": "collections",
-    "__builtin__": "builtins",
-    "anydbm": "dbm",
-    "cPickle": "pickle",
-    "cStringIO": "io",
-    "commands": "subprocess",
-    "compiler": "ast",
-    "cookielib": "http.cookiejar",
-    "copy_reg": "copyreg",
-    "dbhash": "dbm",
-    "dircache": "os",
-    "dl": "ctypes",
-    "dumbdbm": "dbm.dumb",
-    "dummy_thread": "_thread",
-    "exceptions": "builtins",
-    "fpformat": "",
-    "future_builtins": "builtins",
-    "gdbm": "dbm.gnu",
-    "hotshot": "cProfile",
-    "htmlentitydefs": "html.entities",
-    "htmllib": "html.parser",
-    "httplib": "http.client",
-    "ihooks": "",
-    "imputil": "importlib",
-    "linuxaudiodev": "",
-    "markupbase": "_markupbase",
-    "md5": "hashlib",
-    "mhlib": "mailbox",
-    "mimetools": "email",
-    "mimify": "email",
-    "multifile": "email",
-    "mutex": "threading",
-    "new": "types",
-    "os2emxpath": "",
-    "popen2": "subprocess",
-    "posixfile": "fcntl",
-    "repr": "reprlib",
-    "rexec": "",
-    "rfc822": "email",
-    "robotparser": "urllib.robotparser",
-    "sets": "builtins",
-    "sgmllib": "html.parser",
-    "sha": "hashlib",
-    "statvfs": "os",
-    "strop": "",
-    "thread": "_thread",
-    "tkColorChooser": "tkinter.colorchooser",
-    "tkCommonDialog": "tkinter.commondialog",
-    "tkFileDialog": "tkinter.filedialog",
-    "tkFont": "tkinter.font",
-    "tkMessageBox": "tkinter.messagebox",
-    "tkSimpleDialog": "tkinter.simpledialog",
-    "toaiff": "",
-    "ttk": "tkinter.ttk",
-    "urllib2": "urllib.request",
-    "urlparse": "urllib.parse",
-    "user": "",
-    "whichdb": "dbm",
-    "xmllib": "xml.sax",
-    "xmlrpclib": "xmlrpc.client",
-}
-"""Module of Python 2.7 to its home in Python 3 (empty: none)."""
+_PYTHON_2_ONLY = """
+    BaseHTTPServer=http.server Bastion CGIHTTPServer=http.server ConfigParser=configparser Cookie=http.cookies
+    DocXMLRPCServer=xmlrpc.server HTMLParser=html.parser MimeWriter=email Queue=queue
+    ScrolledText=tkinter.scrolledtext SimpleHTTPServer=http.server SimpleXMLRPCServer=xmlrpc.server
+    SocketServer=socketserver StringIO=io Tix=tkinter.tix Tkconstants=tkinter.constants Tkinter=tkinter
+    UserDict=collections UserList=collections UserString=collections __builtin__=builtins anydbm=dbm
+    cPickle=pickle cStringIO=io commands=subprocess compiler=ast cookielib=http.cookiejar copy_reg=copyreg
+    dbhash=dbm dircache=os dl=ctypes dumbdbm=dbm.dumb dummy_thread=_thread exceptions=builtins fpformat
+    future_builtins=builtins gdbm=dbm.gnu hotshot=cProfile htmlentitydefs=html.entities htmllib=html.parser
+    httplib=http.client ihooks imputil=importlib linuxaudiodev markupbase=_markupbase md5=hashlib mhlib=mailbox
+    mimetools=email mimify=email multifile=email mutex=threading new=types os2emxpath popen2=subprocess
+    posixfile=fcntl repr=reprlib rexec rfc822=email robotparser=urllib.robotparser sets=builtins
+    sgmllib=html.parser sha=hashlib statvfs=os strop thread=_thread tkColorChooser=tkinter.colorchooser
+    tkCommonDialog=tkinter.commondialog tkFileDialog=tkinter.filedialog tkFont=tkinter.font
+    tkMessageBox=tkinter.messagebox tkSimpleDialog=tkinter.simpledialog toaiff ttk=tkinter.ttk
+    urllib2=urllib.request urlparse=urllib.parse user whichdb=dbm xmllib=xml.sax xmlrpclib=xmlrpc.client
+"""
+"""Modules of Python 2.7, with their homes in Python 3."""
 
 _NOT_IN_2 = _words(
     """
@@ -158,7 +72,15 @@ _NOT_IN_2 = _words(
     xmlrpc zipapp
     """
 )
-_TOP_2 = frozenset(name for name in PYTHON_2_ONLY if "." not in name)
+
+
+_SUCCESSORS = {
+    word.partition("=")[0]: word.partition("=")[2]
+    for words in (_PYTHON_2_ONLY, *_REMOVED.values())
+    for word in words.split()
+}
+_REMOVED_IN = {word.partition("=")[0]: minor for minor, words in _REMOVED.items() for word in words.split()}
+_TOP_2 = _SUCCESSORS.keys() - _REMOVED_IN.keys()
 
 
 def stdlib(module: str, minor: int, major: int = 3) -> bool:
@@ -169,12 +91,17 @@ def stdlib(module: str, minor: int, major: int = 3) -> bool:
     """
     name = module.partition(".")[0]
     if major == 2:
-        return name in _TOP_2 or (name in _ALWAYS_3 and name not in _NOT_IN_2) or name in REMOVED
-    if name in REMOVED:
-        return minor < REMOVED[name][0]
+        return name in _TOP_2 or (name in _ALWAYS_3 and name not in _NOT_IN_2) or name in _REMOVED_IN
+    if name in _REMOVED_IN:
+        return minor < _REMOVED_IN[name]
     if name in _ADDED:
         return minor >= _ADDED[name]
     return name in _ALWAYS_3 or (name.startswith("_") and name in _PRIVATE)
+
+
+def successor_of(module: str) -> str:
+    """What serves instead of a module that Python 3 lacks; empty where nothing does."""
+    return _SUCCESSORS.get(module.partition(".")[0], "")
 
 
 def stood_in_for(module: str) -> bool:
@@ -185,7 +112,7 @@ def stood_in_for(module: str) -> bool:
 def ever_stdlib(module: str) -> bool:
     """True when any version of Python, 2.7 included, has or had the module in its standard library."""
     name = module.partition(".")[0]
-    return name in _ALWAYS_3 or name in _ADDED or name in REMOVED or name in _TOP_2 or name in _PRIVATE
+    return name in _ALWAYS_3 or name in _ADDED or name in _REMOVED_IN or name in _TOP_2 or name in _PRIVATE
 
 
 _PRIVATE = _words(

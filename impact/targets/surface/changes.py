@@ -80,25 +80,9 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return None if found is None else self.versions.index(found)
 
 
-def brief(message: str) -> str:
-    """A message of a deprecation, cut where it is longer than a sentence."""
-    if len(message) <= _SENTENCE:
-        return message
-    return message[: message.rindex(" ", 0, _SENTENCE) if " " in message[:_SENTENCE] else _SENTENCE] + " ..."
-
-
-_SENTENCE = 160
-
-
-def pack(line: Line) -> bytes:
-    """A line as it is stored."""
-    return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(line))
-
-
 def unpack(data: bytes) -> Line:
     """A stored line."""
     return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
 
 
-_encoder = msgspec.msgpack.Encoder()
 _decoder = msgspec.msgpack.Decoder(Line)

@@ -4,7 +4,7 @@ many packages reads little."""
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import zstandard
@@ -67,14 +67,6 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         row = self._row(header, version)
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
-    def announcing(self) -> dict[str, tuple[str, ...]]:
-        """Types with the headers that announce them in any version."""
-        found: dict[str, dict[str, None]] = {}
-        for header, rows in self.headers.items():
-            for number in {number for row in rows for number in row.announced}:
-                found.setdefault(self.types[number], {})[header] = None
-        return {name: tuple(sorted(headers)) for name, headers in found.items()}
-
     def _row(self, header: str, version: str) -> Row | None:
         rows = self.headers.get(header)
         if not rows or version not in self.versions:
@@ -96,66 +88,9 @@ def there(spans: Sequence[int], place: int) -> bool:
     return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
 
 
-def spans_of(places: Sequence[int], count: int) -> list[int]:
-    """First and last places of each run; nothing for all of them."""
-    if len(places) == count:
-        return []
-    runs: list[int] = []
-    for place in places:
-        if runs and runs[-1] == place - 1:
-            runs[-1] = place
-        else:
-            runs += [place, place]
-    return runs
-
-
-class Including:
-    """Packs what the headers of a package include, version by version, oldest first."""
-
-    def __init__(self) -> None:
-        self._versions: list[str] = []
-        self._approximate: list[str] = []
-        self._numbers: dict[Include, int] = {}
-        self._types: dict[str, int] = {}
-        self._places: dict[str, dict[tuple[tuple[int, ...], tuple[int, ...]], list[int]]] = {}
-
-    def add(
-        self,
-        version: str,
-        headers: Iterable[tuple[str, HeaderSurface]],
-        approximate: bool = False,
-    ) -> None:
-        """The next version."""
-        place = len(self._versions)
-        self._versions.append(version)
-        if approximate:
-            self._approximate.append(version)
-        for path, header in headers:
-            includes = tuple(self._numbers.setdefault(include, len(self._numbers)) for include in header.includes)
-            announced = tuple(self._types.setdefault(name, len(self._types)) for name in header.announced)
-            self._places.setdefault(path, {}).setdefault((includes, announced), []).append(place)
-
-    def packed(self) -> bytes:
-        """All versions as they are stored."""
-        count = len(self._versions)
-        headers = {
-            path: tuple(Row(tuple(spans_of(places, count)), *state) for state, places in states.items())
-            for path, states in sorted(self._places.items())
-        }
-        whole = Included(
-            tuple(self._versions),
-            tuple(self._approximate),
-            tuple(self._numbers),
-            tuple(self._types),
-            headers,
-        )
-        return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(whole))
-
-
 def unpack(data: bytes) -> Included:
-    """What Including packed."""
+    """What databuild packed, see surface_file.py there."""
     return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
 
 
-_encoder = msgspec.msgpack.Encoder()
 _decoder = msgspec.msgpack.Decoder(Included)

@@ -5,29 +5,31 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from ...facts.surface import Entity
 from ...facts.usage import arguments_at
+from ..evidence import of_offered
+from ..symbol import Availability, State, Symbol
 from ..version import at_least
 from .changes import Form, Overload
 from .offers import Offer, Offered, Offers, declarations
 
 
-class Judged(NamedTuple):
-    """What is wrong with a use on a target.
+def _found(state: State, offered: Offered, form: str = "", earlier: bool = True, sure: bool = True) -> Availability:
+    """What surfaces say of a use of a name. earlier: a version before the target's took it."""
+    since = offered.first if earlier or state == "not yet" else offered.coming
+    if state == "deprecated":
+        detail = offered.here.deprecated if offered.here is not None else ""
+    else:
+        detail = offered.before.deprecated if state == "removed" and offered.before is not None else ""
+    return Availability(
+        Symbol("c++", offered.name, (offered.package,)), state, offered.package, offered.version, since,
+        offered.instead, sure=sure and offered.sure, evidence=of_offered(offered), form=form, earlier=earlier,
+        detail=detail or "", gone_in=offered.gone_in if state == "deprecated" else "",
+    )  # fmt: skip
 
-    kind: `removed`, `absent`, `arguments`, `types`, `template` (nothing tells a template argument), `override`, `pure`,
-    `deprecated` or `default`. earlier: a version before the target's took it; else a later one does. sure: nothing
-    about it is guessed."""
 
-    kind: str
-    offered: Offered
-    earlier: bool
-    sure: bool
-
-
-def judged(
+def availability_of_use(
     offers: Offers,
     package: str,
     name: str,
@@ -35,9 +37,9 @@ def judged(
     arguments: int,
     given: tuple[str, ...],
     templated: bool = False,
-) -> Judged | None:
-    """What is wrong with a use of a package's name; None for nothing, or where it cannot be told. The use is described
-    as in model.package.CppApiUse."""
+) -> Availability | None:
+    """How the target stands to a use of a package's name, where it does not serve it; None where it does, or where that
+    cannot be told. The use is described as in model.package.CppApiUse."""
     offer = offers.package(package)
     offered = offer.get("c++", name) if offer is not None else None
     if offer is None or offered is None or offered.state == "moved" or _between(offer, offered):
@@ -52,7 +54,7 @@ def judged(
 
 def _of_what_is_there(
     offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...], templated: bool
-) -> Judged | None:
+) -> Availability | None:
     """The same of a name that the target's version has."""
     package, name = offered.package, offered.name
     if offered.here is None or (how not in ("override", "implement") and _is_alias(offers, package, name)):
@@ -62,7 +64,7 @@ def _of_what_is_there(
     if how == "implement":
         return _unmade(offered)
     if offered.state == "deprecated":
-        return Judged("deprecated", offered, True, offered.sure)
+        return _found("deprecated", offered)
     if how != "call" or arguments < 0:
         return None
     return _call(offered, arguments, given) or (None if templated else _untold(offers, offered, arguments))
@@ -70,14 +72,14 @@ def _of_what_is_there(
 
 def _inherited(
     offers: Offers, offer: Offer, name: str, how: str, arguments: int, given: tuple[str, ...]
-) -> Judged | None:
+) -> Availability | None:
     """The same of a member that the target's version has no longer, or not yet, in the class itself but in a base of
     it: its form is that of the base's. None where the base cannot be told."""
     class_, _, member = name.rpartition("::")
     for base in offer.line.bases.get(class_, ()):
         for package in dict.fromkeys((offer.package, base.partition("::")[0])):
             if offers.there("c++", base, package):
-                return judged(offers, package, f"{base}::{member}", how, arguments, given)
+                return availability_of_use(offers, package, f"{base}::{member}", how, arguments, given)
     return None
 
 
@@ -94,7 +96,7 @@ def _between(offer: Offer, offered: Offered) -> bool:
     )
 
 
-def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
+def _lacking(offers: Offers, offered: Offered, how: str) -> Availability | None:
     name = offered.name
     if not offered.sure or _by_macro(offers, offered):
         return None  # headers that are made or brought while building may have it
@@ -105,7 +107,7 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     if how == "override":
         form = offered.before if offered.state == "removed" else None
         virtual = form is not None and any("virtual" in one.traits for one in form.overloads)
-        return Judged("override", offered, True, offered.sure) if virtual else None
+        return _found("changed", offered, "override") if virtual else None
     if _is_alias(offers, offered.package, name):
         return None
     sure = True
@@ -119,7 +121,7 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
         sure = sure and not bases
     elif offered.what in ("constructor", "destructor"):
         return None
-    return Judged("removed" if offered.state == "removed" else "absent", offered, offered.state == "removed", sure)
+    return _found("removed" if offered.state == "removed" else "not yet", offered, sure=sure)
 
 
 _POINTER = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
@@ -149,7 +151,7 @@ def _is_alias(offers: Offers, package: str, name: str) -> bool:
 # -- calls -------------------------------------------------------------------------------------------------------------
 
 
-def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Judged | None:
+def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
     here = _callable(offered.here)
     if not here:
         return None
@@ -158,17 +160,17 @@ def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Judged | 
     if not any(one.accepts(arguments) for one in here):
         for form, earlier in ((offered.before, True), (offered.after, False)):
             if any(one.accepts(arguments) for one in _callable(form)):
-                return Judged("arguments", offered, earlier, offered.sure)
+                return _found("changed", offered, "arguments", earlier)
         return None
     if any(given) and not any(_takes(one, given) for one in here if one.accepts(arguments)):
         for form, earlier in ((offered.before, True), (offered.after, False)):
             if any(one.accepts(arguments) and _takes(one, given) for one in _callable(form)):
-                return Judged("types", offered, earlier, offered.sure)
+                return _found("changed", offered, "types", earlier)
         return None
     if offered.first and all(told.kind == "default" for told in offered.told):
         relying = [one for one in here if one.accepts(arguments) and (one.most < 0 or arguments < one.most)]
         if len(relying) == len([one for one in here if one.accepts(arguments)]):
-            return Judged("default", offered, True, offered.sure)
+            return _found("changed", offered, "default")
     return None
 
 
@@ -199,13 +201,14 @@ def _clash(shown: str, type_: str) -> bool:
     return False
 
 
-def defaults_changed(offers: Offers, found: Judged, arguments: int) -> tuple[str, str] | None:
+def defaults_changed(offers: Offers, found: Availability, arguments: int) -> tuple[str, str] | None:
     """The default of the first argument left out that was another before, then and now; None where they mean the same,
     or it cannot be told. Reads both versions."""
-    offered = found.offered
+    assert found.evidence is not None
+    name, history = found.symbol.name, offers.history(found.package)
     old, new = (
-        [_defaults(one, offered.name) for one in declarations(offers.history(offered.package), "c++", offered.name, v)]
-        for v in (offered.last, offered.first)
+        [_defaults(one, name) for one in declarations(history, "c++", name, version)]
+        for version in (found.evidence.last, found.evidence.first)
     )
     if len(old) != 1 or len(new) != 1:
         return None
@@ -233,7 +236,7 @@ def _meaning(default: str) -> str:
     return {"NULL": "nullptr", "0": "nullptr", "string()": '""', "{}": "", '""': '""'}.get(text, text.rstrip("."))
 
 
-def _untold(offers: Offers, offered: Offered, arguments: int) -> Judged | None:
+def _untold(offers: Offers, offered: Offered, arguments: int) -> Availability | None:
     """Whether every overload that takes so many arguments has a template parameter that none of them tells, where an
     earlier version had one without."""
     if not offered.first or offered.before is None or offered.here is None:
@@ -247,7 +250,7 @@ def _untold(offers: Offers, offered: Offered, arguments: int) -> Judged | None:
         return None
     if not any(_is_told(one, arguments) for one in before):
         return None
-    return Judged("template", offered, True, offered.sure)
+    return _found("changed", offered, "template")
 
 
 def _accepting(offers: Offers, package: str, name: str, version: str, arguments: int) -> list[Entity]:
@@ -279,7 +282,7 @@ def _is_told(one: Entity, arguments: int) -> bool:
 # -- overrides ---------------------------------------------------------------------------------------------------------
 
 
-def _override(offered: Offered, given: tuple[str, ...]) -> Judged | None:
+def _override(offered: Offered, given: tuple[str, ...]) -> Availability | None:
     """Whether a method that a class declares overrides none of its base's any more, or not yet."""
     const = "const" in given
     types = tuple(one for one in given if one not in ("const", "override"))
@@ -289,7 +292,7 @@ def _override(offered: Offered, given: tuple[str, ...]) -> Judged | None:
     for form, earlier in ((offered.before, True), (offered.after, False)):
         # A method that is not to override anything need not do so yet.
         if any(_same(one, types, const) for one in _virtual(form)) and (earlier or "override" in given):
-            return Judged("override", offered, earlier, offered.sure)
+            return _found("changed", offered, "override", earlier)
     return None
 
 
@@ -314,7 +317,7 @@ def _unlike(one: str, other: str) -> bool:
     return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
 
 
-def _unmade(offered: Offered) -> Judged | None:
+def _unmade(offered: Offered) -> Availability | None:
     """Whether a method that a class does not implement is pure in its base, and was not or will not be."""
     here = _virtual(offered.here)
     if not here or not all("pure" in one.traits for one in here):
@@ -322,7 +325,7 @@ def _unmade(offered: Offered) -> Judged | None:
     for form, earlier in ((offered.before, True), (offered.after, False)):
         place = offered.first if earlier else offered.coming
         if place and (form is None or not any("pure" in one.traits for one in form.overloads)):
-            return Judged("pure", offered, earlier, offered.sure)
+            return _found("changed", offered, "pure", earlier)
     return None
 
 

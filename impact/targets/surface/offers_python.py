@@ -9,37 +9,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any
 
 from ...facts.python.surface import Parameter, parameters_of
 from ...facts.python.uses import Given, PythonUse
+from ..evidence import Evidence
+from ..symbol import Availability, State, Symbol
 from .offers import Offer, Offers
 from .python import UNKNOWN, Entry, Names, signature, wrapped
-
-
-class Lost(NamedTuple):
-    """What is wrong with a use on a target.
-
-    state: `removed`, `absent` (only later versions have it), `unknown` (no version has it), `refused` (it is there
-    and does not take the call, while an earlier version does), `early` (the same of a later version), `override`
-    (the base class calls it otherwise than it did) or `deprecated`. name: what it is about, a part of the use's
-    name. version: the target's. last, first: the last version that has, or takes, it and the first that has not; of
-    what is not there yet first is the first that has it. why: in a clause why a call is refused, or the message of
-    a deprecation. old, new: declarations in the other version and here. instead: what to use now, empty where not
-    known. sure: nothing about it is guessed.
-    """
-
-    state: str
-    package: str
-    name: str
-    version: str
-    last: str
-    first: str
-    why: str
-    old: str
-    new: str
-    instead: str
-    sure: bool
 
 
 class PythonOffers:
@@ -48,19 +25,20 @@ class PythonOffers:
     def __init__(self, offers: Offers):
         self._offers = offers
         self._names: dict[tuple[str, str], Names | None] = {}
-        self._lost: dict[tuple, Lost | None] = {}
+        self._answers: dict[tuple, Availability | None] = {}
         # By package and the last part of a name, the places in the line of versions around its changes.
         self._places: dict[str, dict[str, set[int]]] = {}
 
-    def lost(self, use: PythonUse, packages: Iterable[str]) -> Lost | None:
-        """What is wrong with a use of a name that one of the packages may have; None for nothing that is known."""
+    def ask(self, use: PythonUse, packages: Iterable[str]) -> Availability | None:
+        """How the target stands to a use of a name that one of the packages may have, where it does not serve it; None
+        where nothing is known."""
         offered = [offer for name in packages if (offer := self._offers.package(name)) is not None]
         key = (use.name, use.how, use.given, use.parameters, tuple(offer.package for offer in offered))
-        if key not in self._lost:
-            found = [self._judged(offer, use) for offer in offered]
+        if key not in self._answers:
+            found = [self._asked(offer, use) for offer in offered]
             # What one of them has is there, whatever the others lost.
-            self._lost[key] = found[0] if found and None not in found else None
-        return self._lost[key]
+            self._answers[key] = found[0] if found and None not in found else None
+        return self._answers[key]
 
     def names(self, package: str, version: str) -> Names | None:
         """The Python names of a stored version; None where it has no Python."""
@@ -71,7 +49,7 @@ class PythonOffers:
             self._names[key] = Names(python) if python is not None and python.modules else None
         return self._names[key]
 
-    def _judged(self, offer: Offer, use: PythonUse) -> Lost | None:
+    def _asked(self, offer: Offer, use: PythonUse) -> Availability | None:
         if use.how == "from":
             return self._imported(offer, use)
         lost = self._at(offer, use, offer.place)
@@ -79,9 +57,9 @@ class PythonOffers:
             return lost
         # The target's version lies between two that are stored: both have to say the same.
         after = self._at(offer, use, offer.place + 1) if offer.place + 1 < len(offer.line.versions) else lost
-        return lost if after is not None and (after.state, after.name) == (lost.state, lost.name) else None
+        return lost if after is not None and _kind(after) == _kind(lost) else None
 
-    def _at(self, offer: Offer, use: PythonUse, place: int) -> Lost | None:
+    def _at(self, offer: Offer, use: PythonUse, place: int) -> Availability | None:
         names = self.names(offer.package, offer.line.versions[place])
         if names is None:
             return None
@@ -98,16 +76,30 @@ class PythonOffers:
         if use.how == "override":
             return self._overridden(offer, use, place, entry)
         if entry.bound is not None and entry.bound.deprecated:
-            return self._told("deprecated", offer, use.name, sure=not entry.conditional, why=entry.bound.deprecated)
+            message = entry.bound.deprecated
+            detail = "" if message == "deprecated" else message
+            return self._found("deprecated", offer, use.name, sure=not entry.conditional, detail=detail)
         return None
 
-    def _told(self, state: str, offer: Offer, name: str, **more) -> Lost:
-        told = {"last": "", "first": "", "why": "", "old": "", "new": "", "instead": "", "sure": True, **more}
-        return Lost(state, offer.package, name, offer.version, **told)
+    def _found(
+        self, state: State, offer: Offer, name: str, *, first: str = "", last: str = "", old: str = "", new: str = "",
+        **more: Any,
+    ) -> Availability:
+        """last, first: the last version that has, or takes, it and the first that has not; of what is not there yet
+        first is the first that has it. old, new: the declarations in them. more: of the answer."""
+        earlier, form = more.get("earlier", True), more.get("form", "")
+        evidence = Evidence(
+            offer.package, {"not yet": "added"}.get(state, state), name, more.get("replacement", ""), "python",
+            tuple(filter(None, (old,))), tuple(filter(None, (new,))), last, first, stored=True,
+        )  # fmt: skip
+        if not earlier:
+            evidence = evidence._replace(old=evidence.new, new=evidence.old)
+        return Availability(Symbol("python", name, (offer.package,)), state, offer.package, offer.version, first,
+                            evidence=evidence if form != "never" else None, **more)  # fmt: skip
 
     # Names
 
-    def _missing(self, offer: Offer, use: PythonUse, place: int, names: Names) -> Lost | None:
+    def _missing(self, offer: Offer, use: PythonUse, place: int, names: Names) -> Availability | None:
         if use.how == "override":
             return None
         parts = use.name.split(".")
@@ -118,7 +110,7 @@ class PythonOffers:
         for other in later:
             has = self._entry(offer, other, gone)
             if has is not None:
-                return self._told("absent", offer, gone, first=versions[other], new=_shown(gone, has),
+                return self._found("not yet", offer, gone, first=versions[other], new=_shown(gone, has),
                                   sure=not has.conditional)  # fmt: skip
         for other in earlier:
             had = self._entry(offer, other, gone)
@@ -126,11 +118,11 @@ class PythonOffers:
                 if any(self._has(package, gone) for package in self._offers.surfaces.elsewhere(gone)):
                     return None
                 instead = self._instead(offer, gone, had)
-                return self._told("removed", offer, gone, last=versions[other], first=self._next(offer, other),
-                                  instead=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
+                return self._found("removed", offer, gone, last=versions[other], first=self._next(offer, other),
+                                   replacement=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
         return None
 
-    def _imported(self, offer: Offer, use: PythonUse) -> Lost | None:
+    def _imported(self, offer: Offer, use: PythonUse) -> Availability | None:
         """A name that is imported from a module that is there, and that no version knows in any module."""
         history = self._offers.history(offer.package)
         module, _, word = use.name.rpartition(".")
@@ -141,7 +133,7 @@ class PythonOffers:
         names = self.names(offer.package, offer.stored)
         if names is None or module not in names.modules or names.find(use.name) is not None:
             return None
-        return self._told("unknown", offer, use.name, sure=offer.exact)
+        return self._found("not yet", offer, use.name, sure=offer.exact, form="never")
 
     def _telling(self, offer: Offer, name: str, place: int) -> tuple[list[int], list[int]]:
         """Places of the versions before and after one in which a name may be otherwise, the nearest first: those on
@@ -182,7 +174,7 @@ class PythonOffers:
 
     # Calls
 
-    def _refused(self, offer: Offer, use: PythonUse, place: int, names: Names, entry: Entry) -> Lost | None:
+    def _refused(self, offer: Offer, use: PythonUse, place: int, names: Names, entry: Entry) -> Availability | None:
         here = called_with(names, entry)
         assert use.given is not None
         why = refused(use.given, here) if here is not None else ""
@@ -197,17 +189,17 @@ class PythonOffers:
             if then is None or took is None or refused(use.given, then):
                 continue
             if other > place:
-                state, last, first = "early", "", versions[other]
+                last, first = "", versions[other]
             else:
-                state, last, first = "refused", versions[other], self._next(offer, other)
-            return self._told(
-                state, offer, use.name, last=last, first=first, why=why,
+                last, first = versions[other], self._next(offer, other)
+            return self._found(
+                "changed", offer, use.name, form="call", earlier=other < place, last=last, first=first, detail=why,
                 old=f"{use.name}{signature(then)}", new=f"{use.name}{signature(here)}",
                 sure=not (entry.conditional or took.conditional),
             )  # fmt: skip
         return None
 
-    def _overridden(self, offer: Offer, use: PythonUse, place: int, entry: Entry) -> Lost | None:
+    def _overridden(self, offer: Offer, use: PythonUse, place: int, entry: Entry) -> Availability | None:
         """The base class has a method that is overridden, with other parameters than it had."""
         own = read_parameters(use.parameters)
         if own is None or entry.bound is None or entry.bound.kind != "method" or wrapped(entry.bound):
@@ -220,12 +212,17 @@ class PythonOffers:
             if had is None or had.bound is None or had.bound.kind != "method":
                 continue
             if not unlike(own, had.bound.parameters):
-                return self._told(
-                    "override", offer, use.name, last=versions[other], first=self._next(offer, other), why=why,
+                return self._found(
+                    "changed", offer, use.name, form="override", last=versions[other],
+                    first=self._next(offer, other), detail=why,
                     old=f"{use.name}{signature(had.bound.parameters)}", new=f"{use.name}{signature(here)}",
                     sure=not (entry.conditional or had.conditional),
                 )  # fmt: skip
         return None
+
+
+def _kind(found: Availability) -> tuple[str, str, bool, str]:
+    return found.state, found.form, found.earlier, found.symbol.name
 
 
 def _shown(name: str, entry: Entry) -> str:

@@ -10,9 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sqlite3
-import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache, cached_property, lru_cache
 from operator import itemgetter
 from pathlib import Path
@@ -22,39 +20,18 @@ import msgspec
 import zstandard
 
 from ....edges.console import UserError
-from ....edges.files import read_chunks, writing
 from ...facts.interface import Interface
-from ...facts.parameters import last_part
 from ...facts.python.surface import Bound, ModuleSurface, Taken
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
 from ..snapshot import DATA, SnapshotError
 from . import includes as surface_includes
-from .changes import PARAMETER, Line, brief, unpack
-from .includes import Included, spans_of, there
+from .changes import Line, unpack
+from .includes import Included, there
 
 if TYPE_CHECKING:
     from .surface import BuildSurface, PythonSurface, Surface
 
-_SCHEMA = """
-CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
-  PRIMARY KEY(name, ros)) WITHOUT ROWID;
-CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE headers(data BLOB NOT NULL);
-CREATE TABLE parameters(data BLOB NOT NULL);
-CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
-"""
-"""about: one row, see About. package: for each generation of ROS that has it, what its versions offer, what changed
-between them (see surface_changes.py), and what their headers include (see surface_includes.py): a package of ROS 1 and
-one of ROS 2 may share name and version, and be two. elsewhere: names that some version of a package lost, and the
-packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
-folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
-parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
-_LEVEL = 19
 _TYPES = CLASSES | {"enum", "alias"}
-# (kind, scope, value as JSON-like data)
-_Row = tuple[str, str, Any]
-
-
 class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
 
@@ -65,15 +42,6 @@ class Stored(NamedTuple):
     version: str
     approximate: bool
     surface: Surface
-
-
-class Packed(NamedTuple):
-    """A package of one ROS generation as it is stored: what its versions offer, what changed between them, what their
-    headers include."""
-
-    data: bytes
-    changes: bytes
-    includes: bytes
 
 
 class About(NamedTuple):
@@ -350,143 +318,6 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
 # -- packing -----------------------------------------------------------------------------------------------------------
 
 
-class Packer:
-    """Packs the versions of one package as they come, oldest first, without what their headers include. What is equal
-    is kept once."""
-
-    def __init__(self) -> None:
-        self._versions: list[str] = []
-        self._approximate: list[str] = []
-        self._values: list[_Row] = []
-        self._places: list[list[int]] = []
-        self._numbers: dict[bytes, int] = {}
-        self._parts: dict[bytes, list[int]] = {}
-
-    def add(self, stored: Stored) -> None:
-        """The next version."""
-        place = len(self._versions)
-        self._versions.append(stored.version)
-        if stored.approximate:
-            self._approximate.append(stored.version)
-        for part in _parts(stored.surface):
-            whole = _encoder.encode(part)
-            numbers = self._parts.get(whole)
-            if numbers is None:
-                numbers = self._parts[whole] = [self._number(row) for row in _rows(*part)]
-            for number in numbers:
-                places = self._places[number]
-                if not places or places[-1] != place:
-                    places.append(place)
-
-    def _number(self, row: _Row) -> int:
-        key = _encoder.encode(row)
-        number = self._numbers.setdefault(key, len(self._values))
-        if number == len(self._values):
-            self._values.append(row)
-            self._places.append([])
-        return number
-
-    def packed(self) -> bytes:
-        """All versions as they are stored."""
-        count = len(self._versions)
-        rows = [(*value, spans_of(places, count)) for value, places in zip(self._values, self._places, strict=True)]
-        rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
-        whole = _encoder.encode((self._versions, self._approximate, rows))
-        return zstandard.ZstdCompressor(level=_LEVEL).compress(whole)
-
-
-_encoder = msgspec.msgpack.Encoder()
-
-
-def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
-    """What a surface consists of: kind, name, value. Each gives rows of its own."""
-    from .surface import BuildSurface
-
-    yield from (("header", path, header) for path, header in surface.headers)
-    yield from (("module", module.name, module) for module in surface.python.modules)
-    for what, listed in (("unknown", surface.python.unknown), ("unresolved", surface.python.unresolved)):
-        yield from (("python", what, text) for text in listed)
-    yield from (("interface", name, definition) for name, definition in surface.interfaces)
-    for field in msgspec.structs.fields(BuildSurface):
-        value = getattr(surface.build, field.name)
-        if field.name in ("package", "version"):
-            continue
-        yield from (("build", field.name, item) for item in (value if isinstance(value, tuple) else (value,)))
-    yield from (("parameter", name, default) for name, default in surface.parameters)
-    yield "surface", "", [surface.guessed, surface.runs_with]
-
-
-def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
-    bare = msgspec.to_builtins
-    if kind == "header":
-        yield "header", name, [value.inline, _brief(value.deprecated), value.instead, value.lost]
-        for one in value.entities:
-            yield "entity", name, _short(bare(_without_text(one)), _ENTITY)
-    elif kind == "module":
-        told = value.surface
-        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _brief(told.deprecated),
-                               told.parsed]  # fmt: skip
-        for bound in told.names:
-            bound = msgspec.structs.replace(bound, line=0, deprecated=_brief(bound.deprecated))
-            yield "bound", name, _short(bare(bound), _BOUND)
-        for taken in told.imports:
-            yield "taken", name, bare(msgspec.structs.replace(taken, line=0))
-    elif kind == "interface":
-        yield kind, name, bare(_without_lines(value))
-    else:
-        yield kind, name, bare(value)
-
-
-def _brief(message: str | None) -> str | None:
-    return None if message is None else brief(message)
-
-
-def _without_text(one: Entity) -> Entity:
-    """An entity without its line, names of parameters, statements and long messages."""
-    parameters = one.parameters
-    if parameters is not None:
-        parameters = tuple(
-            msgspec.structs.replace(p, name="", default=None if p.default is None else _without_statements(p.default))
-            for p in parameters
-        )
-    return msgspec.structs.replace(
-        one,
-        line=0,
-        parameters=parameters,
-        value=_without_statements(one.value),
-        deprecated=_brief(one.deprecated),
-    )
-
-
-def _without_statements(value: str) -> str:
-    """A default or a constant; of one that calls a lambda only a digest, which tells it from another."""
-    return f"[](){{{hashlib.sha1(value.encode()).hexdigest()[:8]}}}()" if "{" in value and ";" in value else value
-
-
-def _without_lines(definition: Interface) -> Interface:
-    sections = tuple(
-        msgspec.structs.replace(
-            section,
-            fields=tuple(msgspec.structs.replace(f, line=0, column=0) for f in section.fields),
-            constants=tuple(msgspec.structs.replace(c, line=0, column=0) for c in section.constants),
-        )
-        for section in definition.sections
-    )
-    return msgspec.structs.replace(definition, sections=sections, problems=())
-
-
-def _short(values: list[Any], defaults: list[Any]) -> list[Any]:
-    """The values up to the last that is not what it is by default."""
-    end = len(values)
-    while end and values[end - 1] == defaults[end - 1]:
-        end -= 1
-    return values[:end]
-
-
-_ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
-_BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
-
-
 # -- the file ----------------------------------------------------------------------------------------------------------
 
 
@@ -587,78 +418,3 @@ def shipped() -> Surfaces:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
 
 
-Packages = Mapping[tuple[str, int], Packed]
-"""Packed packages by name and ROS generation."""
-
-
-def write(file: Path, packages: Packages, distros: Sequence[str] = (), date: str = "") -> About:
-    """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
-    versions = {
-        (name, version)
-        for (name, _), packed in packages.items()
-        for version in History(name, packed.data, packed.includes).versions
-    }
-    about = About(len({name for name, _ in packages}), len(versions), " ".join(distros), date)
-    with tempfile.TemporaryDirectory() as folder:
-        fresh = Path(folder, "surfaces.sqlite")
-        _fill(fresh, packages, about)
-        with writing(file) as output:
-            for piece in read_chunks(fresh):
-                output.write(piece)
-    return about
-
-
-def _fill(file: Path, packages: Packages, about: About) -> None:
-    with closing(sqlite3.connect(file)) as db:
-        db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
-        db.executescript(_SCHEMA)
-        db.executemany(
-            "INSERT INTO package VALUES(?, ?, ?, ?, ?)", ((*key, *packed) for key, packed in sorted(packages.items()))
-        )
-        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
-        db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
-        db.execute("INSERT INTO parameters VALUES(?)", (_parameters(packages),))
-        db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
-        db.commit()
-        db.execute("VACUUM")
-
-
-def _elsewhere(packages: Packages) -> dict[str, str]:
-    """Names that a package lost and others have or had, with those packages."""
-    lost: dict[str, set[str]] = {}
-    for (package, _), packed in packages.items():
-        events = unpack(packed.changes).events
-        for side in ("c++", "header", "python"):
-            for name in events.get(side, ()):
-                lost.setdefault(name, set()).add(package)
-    found: dict[str, set[str]] = {}
-    for (package, _), packed in packages.items():
-        for name in History(package, packed.data, packed.includes).names().keys() & lost.keys():
-            if lost[name] != {package}:
-                found.setdefault(name, set()).add(package)
-    return {name: " ".join(sorted(those)) for name, those in found.items()}
-
-
-def _headers(packages: Packages) -> bytes:
-    """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
-    found: dict[str, dict[str, None]] = {}
-    for (package, _), packed in sorted(packages.items()):
-        for header in surface_includes.unpack(packed.includes).headers:
-            if not header.startswith(f"{package}/"):
-                found.setdefault(header, {})[package] = None
-    return _listed(found)
-
-
-def _listed(found: dict[str, dict[str, None]]) -> bytes:
-    ordered = {name: list(packages) for name, packages in sorted(found.items())}
-    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(ordered))
-
-
-def _parameters(packages: Packages) -> bytes:
-    """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
-    found: dict[str, dict[str, None]] = {}
-    for (package, _), packed in sorted(packages.items()):
-        for name, events in unpack(packed.changes).events.get(PARAMETER, {}).items():
-            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told):
-                found.setdefault(last_part(name), {})[package] = None
-    return _listed(found)

@@ -3,7 +3,7 @@
 import pytest
 from joining import joined
 from rosimpact.impact.model.flow.nodes import Built
-from rosimpact.impact.model.flow.rosrun import rosrun
+from rosrun import rosrun
 
 RELAY = """
     std::string out_topic;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..launch.follow import At, Launched, Remap, Setting, Started, known
+from rosimpact.impact.model.launch.follow import At, Launched, Remap, Setting, Started, known
 
 _HERE = At("", "the command line", 0)
 

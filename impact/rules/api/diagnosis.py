@@ -1,0 +1,90 @@
+"""What the rules of this family say of something that a target lacks, or will lack."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+
+from ...model.view import View
+from ...targets.changes import DISTROS
+from ...targets.symbol import Availability, Symbol
+from ..rule import Cure, Diagnostic
+from ..severity import Doubt
+from ..text import Text, Value
+from ..upcoming import Upcoming
+
+UPSTREAM = "{upstream}[[ {version}]]"
+"""The package or library that decides, in the version that the target has."""
+
+
+def availability_texts(verb: str = "use") -> dict[str, Text]:
+    """The texts for what is_missing, deprecated or upcoming, by the kinds that diagnose() gives. verb: what one does
+    with the replacement."""
+    help = (
+        f"[[{verb} `{{replacement}}`]][[, available since {{available}}]][[`{{moved_to}}` has it now]]"
+        "[[{upstream} has `{alike}`]][[its declaration says: {detail}]]"
+    )
+    missing = f"`{{subject}}` is not available in {UPSTREAM}"
+    return {
+        "removed": Text(f"{missing}[[ (removed in {{since}})]]", help),
+        "not yet": Text(f"{missing}[[ (added in {{since}})]]", help),
+        "never": Text(f"{missing}, nor in any other version of it that is known", help),
+        "upcoming": Text(f"`{{subject}}` will be removed: not in {UPSTREAM} ({{horizon}})", help),
+        "deprecated": Text(f"`{{subject}}` is deprecated in {UPSTREAM}[[ and removed in {{gone}}]]", help),
+    }
+
+
+def data_of(found: Availability) -> dict[str, Value]:
+    """The data that the texts name. Of what to do instead only the best is told."""
+    moved = found.moved_to if found.state != "not yet" else ""
+    replacement = "" if moved else found.replacement
+    return {
+        "upstream": found.package,
+        "version": found.version,
+        "since": found.since,
+        "horizon": found.horizon.name if found.horizon is not None else "",
+        "replacement": replacement,
+        "available": found.replacement_since if replacement else "",
+        "moved_to": moved,
+        "gone": found.gone_in,
+        "alike": "" if moved or replacement else found.alike,
+        "detail": "" if moved or replacement or found.alike else found.detail,
+    }
+
+
+def find_missing(view: View, kind: str, name: str, packages: Iterable[str]) -> Availability | None:
+    """What is known of a thing that none of these packages has here, or will have; None for all else."""
+    found = view.availability(Symbol(kind, name, tuple(packages)))
+    return found if found.is_missing or found.state == "upcoming" else None
+
+
+def diagnose(
+    found: Availability,
+    at: object,
+    subject: str,
+    package: str,
+    doubts: Iterable[Doubt | bool | None] = (),
+    *,
+    kind: str = "",
+    data: dict[str, Value] | None = None,
+    fix: tuple[Cure, ...] = (),
+    changed: str = "",
+    order: tuple = (),
+) -> Diagnostic | Upcoming:
+    """What is to be said of something that a use needs. doubts: about the place. kind, data: which text, and what it
+    names, where it is none of availability_texts(). changed, order: see Upcoming; by default the package, the place."""
+    given = data_of(found) if data is None else data
+    kind = kind or ("never" if found.form == "never" else found.state)
+    all_doubts = (*doubts, found.sure or Doubt.INCOMPLETE)
+    diagnostic = Diagnostic(at, subject, package, given, kind, all_doubts, fix=fix, evidence=found.evidence)
+    if found.state != "upcoming" or found.horizon is None:
+        return diagnostic
+    place = getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
+    return Upcoming(diagnostic, changed or found.package, found.horizon, order or place)
+
+
+def is_of_another_distro(view: View, path: str, files: Collection[str]) -> bool:
+    """Whether a file is for other distros than the target: it, or one that stands for it there, lies in a folder that
+    is called after a distro (`param/humble/burger.yaml`). files: of its package."""
+    folder, _, name = path.rpartition("/")
+    distro = view.target.distro
+    return any(part in DISTROS and part != distro for part in folder.split("/")) or f"{folder}/{distro}/{name}" in files

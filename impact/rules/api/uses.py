@@ -1,0 +1,155 @@
+"""Uses of C++ and Python names of released packages that a target does not serve as they need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from ...facts.condition import Condition
+from ...model.cmake.build import At
+from ...model.package import CppApiUse, PythonApiUse
+from ...model.python.api import packages_of
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.changes import function_of
+from ...targets.surface.offers import Offers
+from ...targets.surface.offers_cpp import availability_of_use
+from ...targets.surface.offers_python import PythonOffers
+from ...targets.symbol import Availability
+from ..severity import Doubt, doubts_of_place
+
+
+class UnservedUse(NamedTuple):
+    """A use, how the target stands to it, and what speaks against an error at its place. arguments: how many the call
+    of a C++ function has; keywords: those of a Python call. sure: it surely means that name."""
+
+    at: At
+    name: str
+    found: Availability
+    doubts: tuple[Doubt, ...]
+    arguments: int = -1
+    keywords: tuple[str, ...] = ()
+    sure: bool = True
+
+
+def list_cpp_uses(view: View, package: Package) -> list[UnservedUse]:
+    """Those of C++, in the order of the digest. What the target does not compile, and what reviewed tables speak of is
+    left out. What an update of the distro breaks is upcoming."""
+    return _worked_out(view, package, "C++ uses", _list_cpp)
+
+
+def list_python_uses(view: View, package: Package) -> list[UnservedUse]:
+    """The same of Python; what the workspace provides is left out."""
+    return _worked_out(view, package, "Python uses", _list_python)
+
+
+def _worked_out(
+    view: View, package: Package, key: str, make: Callable[[View, Package], Iterator[UnservedUse]]
+) -> list[UnservedUse]:
+    if (key, package.name) not in view.worked_out:
+        view.worked_out[key, package.name] = list(make(view, package))
+    return view.worked_out[key, package.name]
+
+
+Ask = Callable[[Offers, PythonOffers], Availability | None]
+_FORMS = frozenset(("arguments", "types", "override", "call"))
+
+
+def _answers(view: View, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]) -> Iterator[Availability]:
+    """What the target makes of a use, and the first update of it that breaks the use if that works so far."""
+    found = ask(view.offers, view.python_offers)
+    if found is not None:
+        yield found
+        if found.state != "deprecated" and found.form != "default":
+            return
+    for ahead in view.updates:
+        if all(ahead.target.version(one) == view.target.version(one) for one in owners):
+            continue
+        later = ask(*view.offers_on(ahead))
+        if later is None or not later.earlier or not (later.state == "removed" or later.form in _FORMS):
+            continue
+        if view.active_on(ahead, conditions):
+            yield later.on(ahead)
+            return
+
+
+_REVIEWED = ("api-removed", "api-renamed", "api-changed")
+
+
+def _list_cpp(view: View, package: Package) -> Iterator[UnservedUse]:
+    if not package.digest.cpp_api:
+        return
+    reviewed = {change.old for change in view.changes(*_REVIEWED)}
+    reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
+    calls = {
+        function_of(change.old)
+        for change in view.changes("call-changed")
+        if view.offers.package(change.package) is None  # else its surfaces know more
+    }
+    near = view.closure(package)
+    own = {name for one in view.workspace for name in one.digest.defined}
+    for use in package.digest.cpp_api:
+        if use.package not in near or use.name in own or not view.active(use.conditions):
+            continue
+        head = use.name.partition("::")[0]
+        if head != use.package and head in near:
+            continue  # a name of that package, which this one took over for a while
+        if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_list_tails(use.name)):
+            continue
+        asked = use.package, use.name, use.how, use.arguments, use.given, use.templated
+        ask: Ask = lambda offers, _, asked=asked: availability_of_use(offers, *asked)  # noqa: E731
+        for found in _answers(view, ask, (use.package,), use.conditions):
+            yield UnservedUse(use.at, use.name, found, _doubts_of_cpp(view, use, found), use.arguments, sure=use.sure)
+
+
+def _doubts_of_cpp(view: View, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
+    doubts = doubts_of_place(view, use.role, use.conditions)
+    if not use.sure or any(package in view.workspace.packages for package in use.through):
+        doubts = (*doubts, Doubt.INCOMPLETE)
+    if found.form == "override" and "override" not in use.given:
+        doubts = (*doubts, Doubt.DISTURBS)  # it compiles, and nobody calls it
+    return doubts
+
+
+def _list_python(view: View, package: Package) -> Iterator[UnservedUse]:
+    if not package.digest.python_api:
+        return
+    reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
+    patterns = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "python"}
+    for one in package.digest.python_api:
+        use = one.use
+        head = use.name.partition(".")[0]
+        if head in view.own_modules or not use.alone or not view.certain(use.conditions):
+            continue
+        if (one.at.path, one.at.line) in patterns or not reviewed.isdisjoint(_list_heads(use.name)):
+            continue
+        owners = packages_of(head)
+        ask: Ask = lambda _, python, use=use, owners=owners: python.ask(use, owners)  # noqa: E731
+        for found in _answers(view, ask, owners, use.conditions):
+            keywords = use.given.keywords if use.given is not None else ()
+            doubts = _doubts_of_python(view, one, found)
+            yield UnservedUse(one.at, found.symbol.name, found, doubts, keywords=keywords)
+
+
+def _doubts_of_python(view: View, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
+    doubts = doubts_of_place(view, one.role)
+    if one.role == "test":
+        doubts = (*doubts, Doubt.TEST)  # nobody waits for it, whatever the build makes of it
+    if one.use.lazy:
+        doubts = (*doubts, Doubt.LATE)
+    return (*doubts, Doubt.DISTURBS) if found.form == "override" else doubts
+
+
+def _list_tails(name: str) -> Iterator[str]:
+    """`a::b::c`, `b::c`, `c`."""
+    yield name
+    while "::" in name:
+        name = name.partition("::")[2]
+        yield name
+
+
+def _list_heads(name: str) -> Iterator[str]:
+    """`a.b.c`, `a.b`, `a`."""
+    while name:
+        yield name
+        name = name.rpartition(".")[0]

@@ -1,0 +1,108 @@
+"""What targets are linked to, and what the catkin packages among it bring.
+
+What `catkin_LIBRARIES` holds is told by what the components asked for export, themselves and through CATKIN_DEPENDS:
+by the build of those in the workspace, and by the stored surfaces of those that are released.
+"""
+
+import re
+from collections.abc import Iterable
+
+from ...model.cmake.links import linked_items
+from ...model.view import View
+
+# What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along.
+BRING_NOTHING = frozenset(
+    [
+        "catkin", "Boost", "Eigen", "Eigen3", "EIGEN", "EIGEN3", "orocos_kdl", "console_bridge", "urdfdom",
+        "urdfdom_headers", "TinyXML", "TinyXML2", "tinyxml", "tinyxml2", "Poco", "log4cxx", "LOG4CXX", "Bullet",
+        "BULLET", "bullet", "YAML_CPP", "yaml-cpp", "BZip2", "lz4", "UUID", "CURL", "OpenSSL", "Threads", "PythonLibs",
+    ]
+)  # fmt: skip
+
+
+class Exported:
+    """What catkin packages hand on to whoever links them."""
+
+    def __init__(self, view: View):
+        self._view = view
+
+    def libraries(self, name: str) -> tuple[str, ...]:
+        """The libraries that a package exports; none where that is not known."""
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            return tuple(e.item for e in package.build.exports if e.how == "libraries" and "$" not in e.item)
+        offer = self._view.offers.package(name)
+        return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
+
+    def may_bring(self, name: str, library: str) -> bool:
+        """Whether a part of a library, in lower case, may be among what a package itself hands on."""
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            given = [e.item for e in package.build.exports if e.how in ("system_depends", "libraries")]
+            return any("$" in item or library in item.lower() for item in given)
+        offer = self._view.offers.package(name)
+        if offer is None:
+            return name not in BRING_NOTHING and not _INTERFACES.search(name) and name not in _BARE
+        given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
+        return any(library in item.lower() for item in given)
+
+    def closure(self, names: Iterable[str]) -> frozenset[str] | None:
+        """These packages and all that they bring; None where that of one is not known."""
+        found: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            name = waiting.pop()
+            if name in found:
+                continue
+            found.add(name)
+            further = self._dependencies(name)
+            if further is None:
+                return None
+            waiting.extend(further)
+        return frozenset(found)
+
+    def _dependencies(self, name: str) -> Iterable[str] | None:
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            given = [e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")]
+            return None if package.build.unresolved or any("$" in item for item in given) else given
+        offer = self._view.offers.package(name)
+        if offer is None:
+            # What is no package of ROS, or one that only CMake builds, hands on no package of ROS.
+            plain = not self._view.is_package(name) or self._view.target.known_build_types(name) - {""} == {"cmake"}
+            return () if plain or _INTERFACES.search(name) else None
+        return (*offer.build.dependencies, *offer.build.system)
+
+
+_INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
+# What packages of interfaces export.
+_BARE = frozenset({"message_runtime", "message_generation"})
+
+
+def list_linked(package, target: str) -> set[str] | None:
+    """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
+    items = linked_items(package, target)
+    if items is None or any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
+        return None
+    return items
+
+
+_VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
+
+
+def linked_packages(view: View, package, items: Iterable[str]) -> set[str]:
+    """The packages that link items stand for."""
+    names = {stem_of(item).partition("::")[0] for item in items}
+    if "catkin" in names:
+        names.update(f.name for f in package.build.found if f.how == "catkin")
+    return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
+
+
+def stem_of(item: str) -> str:
+    """`tf` of `${tf_LIBRARIES}`; any other item itself."""
+    match = _VARIABLE.fullmatch(item)
+    return match.group(1) if match else item
+
+
+def plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())

@@ -1,0 +1,149 @@
+"""What speaks against an error where something is used that a package does not declare.
+
+The question is whether the build or the program is sure to stop on a machine that has just what the manifest brings:
+the build farm, which builds packages one by one, or a fresh container after rosdep install, which has what all packages
+of the workspace bring.
+"""
+
+from __future__ import annotations
+
+import re
+
+from ...model.view import Need, View
+from ...model.workspace import Package
+from ..evidence import circular
+from ..severity import Doubt
+
+ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
+"""How CMake asks for something, so that the configuration stops without it."""
+_STARTED = frozenset(("launch", "plugin", "shell"))
+_TEST_HEADERS = ("gtest/", "gmock/")
+# The day of bloom 0.11.0, whose packages are built without tests on the build farm. Source: its commit 53beb52.
+_FARM_BUILDS_NO_TESTS = "2022-04-19"
+# What a package that generates messages hands on to whoever uses them.
+_RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
+_OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
+
+
+def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+    """Of a need that nothing which the package declares answers. name: what would answer it, and can be had."""
+    if need.role == "aside":
+        return (Doubt.EXAMPLE,)
+    if need.how in _STARTED or need.how == "import":
+        return _at_run_time(view, package, need, name)
+    if need.how in ASKED and need.how != "program" and not (need.required and any(p.sure for p in need.providers)):
+        return (Doubt.DISPENSABLE,)
+    if not need.certain:
+        return (Doubt.DISPENSABLE,)
+    if need.how == "include":
+        return _of_include(view, package, need, name)
+    doubts = _unknown(view, package, need, name)
+    return doubts if need.required else (*doubts, Doubt.CONDITIONAL)
+
+
+def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
+    """Of a need that is answered by what happens to be installed along: none where the build farm does not install it,
+    as it does what is declared to run."""
+    stops = need.role == "build" and (need.how in ASKED or need.targets)
+    installed = view.roles.on_build_farm(package)
+    if not stops or view.answered(need.providers, installed):
+        return (Doubt.LUCKY,)
+    return (Doubt.INCOMPLETE,) if _is_grouped(package) or view.list_unknown(installed) else ()
+
+
+def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
+    """Of an include that a target compiles, where the compiler is sure to stop at it."""
+    doubts = () if view.built(need.role) else (Doubt.TEST,)
+    if any(view.certain(target.conditions) for target in package.build.targets if target.name in need.targets):
+        return doubts
+    return (*doubts, Doubt.CONDITIONAL)
+
+
+def is_chance(view: View, package: Package, need: Need, name: str) -> bool:
+    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody. name:
+    what answers it. Whoever starts launch files has what their command brings, and what is declared for tests brings
+    what tests use."""
+    if need.role == "aside" or (need.how == "include" and not need.targets):
+        return False
+    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return False
+    if need.role == "test" and view.answered(need.providers, view.roles.at_hand(package, "tests alone")):
+        return False
+    if need.subject == package.build_type:
+        return not view.roles.has_build_tool(package, need.subject)
+    if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
+        return True
+    # Modules and nodes are not handed on: whoever has them can use them.
+    if need.how not in ASKED and need.how != "include":
+        return False
+    return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
+
+
+def _at_run_time(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+    """Of modules, and of what launch files and scripts start. What depends on the package itself cannot be declared,
+    and who wants both has it."""
+    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return (Doubt.DISPENSABLE,)
+    if circular(view, package, name):
+        return (Doubt.DISPENSABLE,)
+    # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
+    wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
+    if not wanted or (need.how in _STARTED and need.role != "run"):
+        return (Doubt.DISPENSABLE,)
+    return (Doubt.LATE,)
+
+
+def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+    first = need.providers[0]
+    if not need.targets:
+        # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
+        passed_on = need.public and first.kind == "ros" and not need.subject.startswith(_TEST_HEADERS)
+        if need.role == "test":
+            return (Doubt.TEST,)
+        if not passed_on or circular(view, package, name):
+            return (Doubt.UNCOMPILED,)
+        return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
+    doubts = (*_unknown(view, package, need, name), *doubts_of_compiled(view, package, need))
+    # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
+    if not first.sure and first.kind == "system":
+        return (*doubts, Doubt.AMBIGUOUS)
+    if not first.sure and not _is_generated(view, first.name, need.subject):
+        return doubts if view.has_released_header(first.name, need.subject) is not False else (*doubts, Doubt.AMBIGUOUS)
+    return doubts
+
+
+def _unknown(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+    """INCOMPLETE where something that comes along has dependencies or contents that are not known, so that it may bring
+    what is needed."""
+    if _is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
+        return (Doubt.INCOMPLETE,)
+    farm_tests = view.target.date < _FARM_BUILDS_NO_TESTS
+    if need.role == "test" and not farm_tests and view.answered(need.providers, view.brought_to_workspace):
+        return (Doubt.LUCKY,)
+    return (Doubt.INCOMPLETE,) if need.providers[0].kind == "system" and view.sealed(package) else ()
+
+
+def _is_grouped(package: Package) -> bool:
+    """True for a package that depends on a group: any member that is there can bring anything."""
+    return any(d.kind == "group" for d in package.manifest.dependencies)
+
+
+def _is_generated(view: View, name: str, header: str) -> bool:
+    """True for the header of an interface, which no tree of the released package shows."""
+    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.installed_with(name))
+
+
+def _stops_another(view: View, package: Package, need: Need) -> bool:
+    """True when another package of the workspace compiles the installed header, and nothing brings it what that
+    includes either."""
+    for other in view.everyone():
+        if other.name == package.name:
+            continue
+        for include in other.digest.includes:
+            if include.role != "build" or not include.targets or not view.certain(include.conditions):
+                continue
+            if need.subject not in view.outward((include.path,))[0] or view.blind(other):
+                continue
+            if not view.answered(need.providers, view.may_bring(other)):
+                return True
+    return False

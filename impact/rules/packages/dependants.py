@@ -1,0 +1,49 @@
+"""Packages of the workspace that are sure to stop at what another one of it offers them."""
+
+from __future__ import annotations
+
+from ...model.cmake.build import BuildTarget
+from ...model.cmake.links import found_with, package_of
+from ...model.view import View
+from ...model.workspace import Package
+
+
+def compiled_elsewhere(view: View, package: Package, header: str) -> bool:
+    """Whether a target of another package compiles a header of this one in any case. header: path in the workspace."""
+    name = f"/{header}".rpartition("/include/")[2]
+    return any(
+        include.role == "build"
+        and include.targets
+        and view.certain(include.conditions)
+        and name in view.outward((include.path,))[1]
+        for other in view.everyone()
+        if other.name != package.name
+        for include in other.digest.includes
+    )
+
+
+def links_without(view: View, package: Package, target: BuildTarget, needed: str) -> bool:
+    """Whether another package links an exported target of this one, and finds `needed` neither by itself nor along with
+    others: CMake stops at a target of it. needed: as CMake calls it."""
+    names = {needed.lower(), *(provider.name.lower() for provider in view.cmake(needed))}
+    for other in view.everyone():
+        if other.name == package.name or not _links(view, other, package.name, target.export_name or target.name):
+            continue
+        found = {f.name for f in other.build.found if view.active(f.conditions)}
+        if any("$" in name for name in found) or any(f.how == "ament_auto" for f in other.build.found):
+            continue
+        if names.isdisjoint(name.lower() for name in found_with(view, found)):
+            return True
+    return False
+
+
+def _links(view: View, package: Package, other: str, target: str) -> bool:
+    """Whether a target that is built in any case is linked to one of another package, by name or as all that it has."""
+    return any(
+        package_of(link.item) == other
+        and (link.how == "ament" or link.item == f"{other}::{target}" or link.item.endswith("_TARGETS}"))
+        and view.certain((*built.conditions, *link.conditions))
+        for built in package.build.targets
+        for link in built.links
+        if link.how in ("link", "ament")
+    )

@@ -1,0 +1,59 @@
+"""incomplete-metapackage: a metapackage brings every package of its repository except one.
+
+What it does
+    Compares what a metapackage declares with the packages in the folders beside it.
+
+Why it breaks
+    Whoever installs the metapackage misses that package.
+
+Severity
+    warning.
+
+Example
+    a metapackage `arm` that declares `arm_driver`, `arm_msgs` and `arm_description`, beside an `arm_control`
+
+Use instead
+    <exec_depend>arm_control</exec_depend>
+
+Not reported
+    Packages for tests, examples, demos or simulation by their names; metapackages that bring few of their neighbours.
+"""
+
+import posixpath
+import re
+
+from ...model.cmake.build import At
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..text import Text
+
+# A metapackage that brings fewer packages says nothing of what it should.
+_MEMBERS = 3
+_APART = re.compile(
+    r"(^|_)(tests?|testing|examples?|demos?|tutorials?|benchmarks?|experimental|data|dev|simulation|gazebo)(_|$)"
+)
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    group="undeclared-package",
+    texts=Text(
+        "the metapackage `{package}` brings every package of its repository except `{subject}`",
+        help="add `<{tag}>{subject}</{tag}>`, if that is not meant",
+    ),
+)
+def incomplete_metapackage(view: View):
+    for package in view:
+        if not package.manifest.metapackage:
+            continue
+        declared = view.declared(package)
+        folder = posixpath.dirname(package.path)
+        members = {
+            p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder
+        }
+        missing = [name for name in members - declared.keys() if not _APART.search(name)]
+        if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
+            continue
+        tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
+        yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})

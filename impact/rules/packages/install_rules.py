@@ -1,0 +1,36 @@
+"""The install rules of packages, as the rules on them ask for it."""
+
+import posixpath
+from collections.abc import Iterator
+
+from ...model.cmake.build import Install
+from ...model.cmake.installed import lets_in
+from ...model.view import View
+from ...model.workspace import Package
+
+
+def list_installing(view: View) -> Iterator[tuple[Package, list[Install]]]:
+    """The packages whose install rules are known, with those that count on the target."""
+    for package in view:
+        if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+            continue
+        if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
+            continue
+        yield package, [i for i in package.build.installs if view.active(i.conditions)]
+
+
+def is_installed(package: Package, installs: list[Install], path: str) -> bool:
+    """Whether an install rule takes a file."""
+    for install in installs:
+        for item in install.items:
+            if "$" in item:
+                return True
+            item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
+            if path == item:
+                return True
+            base = "" if item in ("", ".") else f"{item}/"
+            if install.kind == "directory" and path.startswith(base) and lets_in(install, path[len(base) :]):
+                return True
+            if install.kind == "python" and (path.startswith(item + "/") or not item):
+                return True
+    return False

@@ -1,0 +1,140 @@
+"""misplaced-install: an install rule puts headers where nobody looks for them, or scripts that cannot be executed.
+
+What it does
+    Reports a folder `include` that is installed into another one of that name, headers that are installed under
+    another folder's name than they are included by, and scripts that install(FILES) copies without the permission to
+    be executed.
+
+Why it breaks
+    The package builds from its own tree; dependants do not find its headers, and rosrun or ros2 run not its scripts.
+
+Severity
+    error where another package of the workspace compiles such a header, and for scripts that are installed among
+    programs, or nodes in Python (ROS 1); warning otherwise.
+
+Example
+    install(DIRECTORY include DESTINATION include)
+
+Use instead
+    install(DIRECTORY include/ DESTINATION include)
+
+Not reported
+    Launch files and other scripts that programs run as data.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .install_rules import is_installed, list_installing
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-install",
+    texts={
+        "doubled": Text(
+            "the folder `include` is installed into `include`, so headers end up in include/include",
+            "write `include/` with a slash at its end",
+        ),
+        "not executable": Text(
+            "`{subject}` is installed with install(FILES), so it cannot be executed", "install(PROGRAMS ...)"
+        ),
+        "renamed": Text(
+            "headers that are included as `{name}/...` are installed into `{destination}`",
+            "install them into `{place}`",
+        ),
+    },
+)
+def misplaced_install(view: View):
+    for package, installs in list_installing(view):
+        yield from _list_doubled(view, package, installs)
+        yield from _list_not_executable(view, package, installs)
+        yield from _list_renamed(view, package, installs)
+
+
+def _list_doubled(view: View, package, installs) -> Iterator[Diagnostic]:
+    """Folders called include that are installed into one of that name, so that headers end up in include/include."""
+    for install in installs:
+        if install.kind != "directory" or install.destination.rstrip("/").rpartition("/")[2] != "include":
+            continue
+        for item in install.items:
+            if item.rpartition("/")[2] == "include" and not item.endswith("/"):
+                doubts = (_is_lost(view, package, install, item) or Doubt.DISTURBS,)
+                yield Diagnostic(install.at, "include", package.name, kind="doubled", doubts=doubts)
+
+
+def _is_lost(view: View, package, install, folder: str) -> bool:
+    """True when another package of the workspace compiles a header of the folder, or the package exports the place
+    where its headers should lie, and no other rule installs them there."""
+    if not view.certain(install.conditions) or package.build.unresolved:
+        return False
+    exported = [e.item for e in package.build.exports if "include" in e.how and view.certain(e.conditions)]
+    if any("$" in item or item.rstrip("/").endswith("include/include") for item in exported):
+        return False
+    others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
+    start = posixpath.normpath(folder) + "/"
+    headers = {h[len(start) :] for h in package.digest.headers if h.startswith(start)}
+    if any(is_installed(package, others, start + h) for h in headers):
+        return False
+    if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
+        return True
+    return any(
+        include.path in headers and include.role == "build" and include.targets and view.certain(include.conditions)
+        for other in view.everyone()
+        if other.name != package.name
+        for include in other.digest.includes
+    )
+
+
+def _list_not_executable(view: View, package, installs) -> Iterator[Diagnostic]:
+    """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
+    programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
+    for install in installs:
+        if install.kind != "files":
+            continue
+        among_programs = re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination)
+        for item in install.items:
+            path = posixpath.normpath(item)
+            inside = path[len(package.path) :].lstrip("/")
+            started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
+            if path in package.digest.scripts and started and path not in programs and not inside.endswith(_RUN_BY):
+                name = posixpath.basename(path)
+                sure = among_programs or _is_node(view, package, path)
+                doubts = (bool(sure) or Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
+                yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
+
+
+def _is_node(view: View, package, script: str) -> bool:
+    """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
+    return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
+
+
+# Scripts that other programs run, as data.
+_RUN_BY = (".launch.py", "setup.py", "conftest.py")
+
+
+def _list_renamed(view: View, package, installs) -> Iterator[Diagnostic]:
+    """Folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
+    for install in installs:
+        if install.kind != "directory":
+            continue
+        root, _, tail = install.destination.rstrip("/").rpartition("include")
+        for item in install.items:
+            folder = re.search(r"(?:^|/)include/([\w-]+)/\Z", item)
+            if "$" in item:
+                continue  # how others include what lies outside of the workspace is not known
+            if folder is None or root or tail in ("", "/" + folder.group(1)) or tail.count("/") != 1:
+                continue
+            name = folder.group(1)
+            doubts = (_is_lost(view, package, install, item.rstrip("/").removesuffix(name)) or Doubt.DISTURBS,)
+            catkin = tail == "/" + package.name and package.build_type == "catkin"
+            subject = "CATKIN_PACKAGE_INCLUDE_DESTINATION" if catkin else install.destination
+            place = f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{name}" if catkin else f"include/{name}"
+            data = {"name": name, "destination": install.destination, "place": place}
+            yield Diagnostic(install.at, subject, package.name, data, "renamed", doubts)

@@ -1,0 +1,80 @@
+"""What is asked of a target, and its answer: a symbol, and how the target stands to it. See availability.py."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+if TYPE_CHECKING:
+    from .evidence import Evidence
+    from .target import Target
+
+State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
+
+
+class Symbol(NamedTuple):
+    """Something that may be there or not. kind: `package`, `header`, `c++`, `python`, `command`, `target`, `variable`,
+    `executable`, `plugin`, `launch file`, `launch argument` (name: `path argument`), `parameter`, `interface` (name:
+    `msg/Name`) or `field` (name: `msg/Name.field`, or `srv/Name.request.field` of one section). packages: that may have
+    it; of platform libraries none."""
+
+    kind: str
+    name: str
+    packages: tuple[str, ...] = ()
+
+
+class Horizon(NamedTuple):
+    """What a target is going to be. name: as a message has it. soon: with the next sync, which the distro's build farm
+    builds against already. platform: the newest distro, of which only the platform counts: libraries and Python. What
+    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
+    long-term distros ahead, which is worth no warning."""
+
+    target: Target
+    name: str
+    soon: bool = False
+    platform: bool = False
+    far: bool = False
+
+
+class Availability(NamedTuple):
+    """How a target stands to a symbol, or to one use of it.
+
+    state: `present`; `removed`, earlier versions of this ROS generation had it; `not yet`, only later ones have it;
+    `changed`, there under the same name, and something else; `deprecated`, there, and it warns; `upcoming`, there, and
+    removed, or changed, on the horizon; `unknown`. package, version: of what decides, as the target (or, of what is
+    upcoming, the horizon) has it. since: the version that removed, added, changed or deprecated it, as far as it is
+    known. replacement: what stands for it, replacement_since: the version that has that first; moved_to: the package
+    that has it now. alike: what is there under a similar name. library: package is a platform library. sure: nothing
+    about it is guessed. horizon: where it is removed, of what is upcoming.
+    form: how it is changed, for what it is used as: `arguments`, `types`, `template` (nothing tells a template
+    argument), `override`, `pure`, `default` or `call`; of what is not there, `never` where no version has it. earlier:
+    a version before the target's took the use; else a later one does. detail: what the package itself says of it, or
+    why a call is refused. gone_in: of what is deprecated, the version that removes it.
+    """
+
+    symbol: Symbol
+    state: State
+    package: str = ""
+    version: str = ""
+    since: str = ""
+    replacement: str = ""
+    moved_to: str = ""
+    alike: str = ""
+    library: bool = False
+    sure: bool = True
+    evidence: Evidence | None = None
+    horizon: Horizon | None = None
+    replacement_since: str = ""
+    form: str = ""
+    earlier: bool = True
+    detail: str = ""
+    gone_in: str = ""
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether a use of it fails on the target."""
+        return self.state in ("removed", "not yet")
+
+    def on(self, horizon: Horizon) -> Availability:
+        """What this horizon's answer is for the target that has it still."""
+        evidence = self.evidence._replace(ahead=True) if self.evidence is not None else None
+        return self._replace(state="upcoming", horizon=horizon, evidence=evidence)
