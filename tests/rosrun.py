@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rosimpact.impact.model.launch.follow import At, Launched, Remap, Setting, Started, known
+from rosimpact.impact.model.launch.result import At, Launched, Remap, Setting, Started
+from rosimpact.impact.model.launch.text import known
 
 _HERE = At("", "the command line", 0)
 

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import ast
-import operator
 import warnings
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
+from ..facts.python.text import COMPARISONS
 from .environment import Environment
 from .logic import both, either, negation
 
 _UNKNOWN = object()
-_PYTHON_COMPARISONS: dict[type, Callable[[Any, Any], bool]] = {
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.In: lambda left, right: left in right,
-    ast.NotIn: lambda left, right: left not in right,
-}
 
 
 class _VersionInfo(tuple):
@@ -183,7 +173,7 @@ def _python_compare(node: ast.Compare, environment: Environment) -> Any:
     left = _python_value(node.left, environment)
     for kind, right_node in zip(node.ops, node.comparators, strict=True):
         right = _python_value(right_node, environment)
-        compare = _PYTHON_COMPARISONS.get(type(kind))
+        compare = COMPARISONS.get(type(kind))
         if left is _UNKNOWN or right is _UNKNOWN or compare is None:
             result = both(result, None)
         elif isinstance(left, _VersionInfo) or isinstance(right, _VersionInfo):

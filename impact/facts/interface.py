@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 
 import msgspec
 
-from .markup import decode, line_starts
+from .markup import Document, decode
 from .place import Problem
 
 
@@ -227,7 +226,7 @@ class _Idl:
 
     def __init__(self, text: str):
         self.text = text
-        self.starts = line_starts(text)
+        self.place = Document(text).place
         self.tokens = [
             _Token(m.lastgroup or "mark", m.group(), m.start())
             for m in IDL_TOKEN.finditer(text)
@@ -265,10 +264,6 @@ class _Idl:
         if token.kind != "name":
             raise _Unreadable(f"`{_shortened(token.text)}` stands where a name should")
         return token
-
-    def place(self, offset: int) -> tuple[int, int]:
-        line = bisect_right(self.starts, offset)
-        return line, offset - self.starts[line - 1] + 1
 
     def line(self) -> int:
         at = min(self.at, len(self.tokens)) - 1

@@ -9,6 +9,7 @@ from __future__ import annotations
 import codecs
 import re
 from bisect import bisect_right
+from collections.abc import Iterable
 from typing import NamedTuple
 from xml.parsers import expat
 
@@ -65,32 +66,23 @@ class Element:
 
 
 class Document:
-    """A scanned file: its text, its elements in order, what kept it from being well-formed."""
+    """A scanned file: its text, its elements in order, what kept it from being well-formed. A line ends with a line
+    feed."""
 
     __slots__ = ("_starts", "elements", "problems", "text")
 
-    def __init__(self, text: str, elements: list[Element], problems: tuple[Problem, ...]):
+    def __init__(self, text: str, elements: Iterable[Element] = (), problems: tuple[Problem, ...] = ()):
         self.text = text
-        self.elements = elements
+        self.elements = list(elements)
         self.problems = problems
         self._starts: list[int] | None = None
 
     def place(self, offset: int) -> tuple[int, int]:
         """Line and column of an offset, both from 1."""
         if self._starts is None:
-            self._starts = line_starts(self.text)
+            self._starts = [0, *(line.end() for line in re.finditer("\n", self.text))]
         line = bisect_right(self._starts, offset)
         return line, offset - self._starts[line - 1] + 1
-
-
-def line_starts(text: str) -> list[int]:
-    """Offsets at which lines start; a line ends with a line feed."""
-    starts = [0]
-    at = text.find("\n")
-    while at != -1:
-        starts.append(at + 1)
-        at = text.find("\n", at + 1)
-    return starts
 
 
 def decode(data: bytes) -> str:

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
-from rosimpact.impact.model.launch.follow import Setting, SettingFile, Text, file_values, follow
-from rosimpact.impact.model.launch.text import CannotTell, evaluate, ros1_value
+from rosimpact.impact.model.launch.follow import follow
+from rosimpact.impact.model.launch.result import Setting, SettingFile, file_values
+from rosimpact.impact.model.launch.text import CannotTell, Text, evaluate, ros1_value
 
 
 class Files:

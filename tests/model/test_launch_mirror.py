@@ -17,7 +17,8 @@ import pytest
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.flow.names import joined, ros1_remapped, ros2_remapped, ros2_rule
-from rosimpact.impact.model.launch.follow import Started, follow
+from rosimpact.impact.model.launch.follow import follow
+from rosimpact.impact.model.launch.result import Started
 
 MIRROR = os.environ.get("ROSIMPACT_MIRROR", "")
 ROWS = [json.loads(line) for line in (Path(__file__).parent / "data/launch_names_read.jsonl").read_text().splitlines()]

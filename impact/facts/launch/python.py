@@ -134,6 +134,14 @@ class Walker:
             if added:
                 del self.conditions[-added:]
 
+    def under(self, statements: Sequence[ast.stmt], *conditions: Condition) -> bool:
+        """Walks statements under more conditions; True as from block()."""
+        count = len(self.conditions)
+        self.conditions += conditions
+        jumps = self.block(statements)
+        del self.conditions[count:]
+        return jumps
+
     def run_Expr(self, statement: ast.Expr) -> None:
         self.value(statement.value)
 
@@ -199,13 +207,9 @@ class Walker:
         yes = Condition("if", decided, statement.lineno)
         no = Condition("unless", decided, statement.lineno)
         before = dict(self.scope.names)
-        self.conditions.append(yes)
-        body_jumps = self.block(statement.body)
-        self.conditions.pop()
+        body_jumps = self.under(statement.body, yes)
         after_body, self.scope.names = self.scope.names, dict(before)
-        self.conditions.append(no)
-        else_jumps = self.block(statement.orelse)
-        self.conditions.pop()
+        else_jumps = self.under(statement.orelse, no)
         if body_jumps and else_jumps:
             return True
         if body_jumps:
@@ -225,19 +229,13 @@ class Walker:
         turns = self.turns(self.value(statement.iter))
         if turns is None:
             over = f"for {source_of(statement.target)} in {source_of(statement.iter)}"
-            self.conditions.append(Condition("each", (other(over),), statement.lineno))
             self.bind_unknown(statement.target)
-            self.block(statement.body)
-            self.conditions.pop()
+            self.under(statement.body, Condition("each", (other(over),), statement.lineno))
         else:
             for turn in turns:
                 value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
-                self.conditions += extra
                 self.bind(statement.target, value)
-                jumped = self.block(statement.body)
-                if extra:
-                    del self.conditions[-len(extra) :]
-                if jumped and not _continues(statement.body):
+                if self.under(statement.body, *extra) and not _continues(statement.body):
                     break
         self.block(statement.orelse)
 
@@ -257,9 +255,9 @@ class Walker:
         return items if len(items) <= MOST_TURNS else None
 
     def run_While(self, statement: ast.While) -> None:
-        self.conditions.append(Condition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno))
-        self.block(statement.body)
-        self.conditions.pop()
+        self.under(
+            statement.body, Condition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno)
+        )
 
     def run_With(self, statement: ast.With) -> bool:
         for item in statement.items:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from ..python.text import ARITHMETIC, COMPARISONS
 from .actions import Condition, Piece, Value, literal
 
 
@@ -207,7 +208,7 @@ def source_of(node: ast.AST) -> str:
 def calculated(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
     """Small sums and comparisons of known numbers."""
     op = node.op if isinstance(node, ast.BinOp) else node.ops[0]
-    calculate = _SUMS.get(type(op))
+    calculate = ARITHMETIC.get(type(op)) or COMPARISONS.get(type(op))
     if calculate is None or left is None or right is None:
         return Unknown(source_of(node))
     try:
@@ -215,20 +216,6 @@ def calculated(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
     except (ArithmeticError, TypeError, ValueError):
         return Unknown(source_of(node))
     return Constant(value) if abs(value) < 2**60 else Unknown(source_of(node))
-
-
-_SUMS: dict[type, Callable[[Any, Any], Any]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.FloorDiv: lambda a, b: a // b,
-    ast.Mod: lambda a, b: a % b,
-    ast.Lt: lambda a, b: a < b,
-    ast.LtE: lambda a, b: a <= b,
-    ast.Gt: lambda a, b: a > b,
-    ast.GtE: lambda a, b: a >= b,
-}
 
 
 def folder_of(value: Value) -> Value:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Callable
 from functools import partial
 
 import msgspec
 from msgspec import structs
 
-from ..markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
+from ..markup import TOKEN, Attribute, Document, Element, decode, scan, well_formed
 from ..place import Problem, Reference
 from ..words import words_of
 from .documents import launch_document
@@ -354,16 +353,6 @@ def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...
     return tuple(p for p in well_formed(blanked) if "junk after document element" not in p.message)
 
 
-def _lines(text: str) -> Callable[[int], tuple[int, int]]:
-    starts = line_starts(text)
-
-    def place(offset: int) -> tuple[int, int]:
-        line = bisect_right(starts, offset)
-        return line, offset - starts[line - 1] + 1
-
-    return place
-
-
 PLUGIN_KEY = re.compile(r"(?:plugins?|kinematics_solver|_adapters|_layer)\Z")
 # Values of YAML that name classes: `plugin: "a::B"`, `type: some_controllers/SomeController`, also within braces.
 CLASS_VALUE = re.compile(
@@ -408,7 +397,7 @@ def _values(data: bytes) -> ReferenceFile:
     if not YAML_WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
-    found = _Found(_lines(text))
+    found = _Found(Document(text).place)
     _plugin_values(found, text, 0, False)
     for m in re.finditer(r"^.*(?:\$\(|://).*$", text, re.MULTILINE):
         line = m.group()
@@ -438,7 +427,7 @@ def _shell(data: bytes) -> ReferenceFile:
     if not WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
-    found = _Found(_lines(text))
+    found = _Found(Document(text).place)
     heredoc = ""
     depth = 0
     offset = 0

@@ -529,7 +529,7 @@ class Reader(Objects, Text):
     def visit_Global(self, node: ast.Global) -> None:
         # An import or assignment here binds the module's name.
         for name in node.names:
-            self.scope.imports.setdefault(name, self.scope.module.imports.setdefault(name, []))
+            self.scope.imports.setdefault(name, self.scope.chain[-1].imports.setdefault(name, []))
 
     def visit_Assign(self, node: ast.Assign) -> None:
         self.visit(node.value)
@@ -742,9 +742,7 @@ class Reader(Objects, Text):
     def looked_up_by_functions(self) -> None:
         """Packages named in calls of this file's own functions that look up a package by a parameter."""
         for scope, name, node, conditional in self.calls if self.lookups else ():
-            looking: Scope | None = scope
-            while looking is not None and (looking, name) not in self.lookups:
-                looking = looking.parent
+            looking = next((each for each in scope.chain if (each, name) in self.lookups), None)
             if looking is None:
                 continue
             index, parameter = self.lookups[looking, name]

@@ -1,8 +1,11 @@
 """The source of parts of a Python syntax tree, and the pieces of strings that are put together."""
 
 import ast
+import operator
 import re
 import string
+from collections.abc import Callable
+from typing import Any
 
 # A comment, or a string in which a `#` is none.
 _COMMENT = re.compile(r"(\"\"\"[\s\S]*?\"\"\"|'''[\s\S]*?'''|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*')|#[^\n]*|\\\n")
@@ -11,6 +14,29 @@ _PERCENT = re.compile(
     r"(?P<kind>[diouxXeEfFgGcrsa%])"
 )
 _AT_MOST_LINES = 40
+
+
+# What the operators of expressions do with values.
+ARITHMETIC: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+}
+COMPARISONS: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.In: lambda left, right: left in right,
+    ast.NotIn: lambda left, right: left not in right,
+    ast.Is: operator.eq,
+    ast.IsNot: operator.ne,
+}
 
 
 def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:

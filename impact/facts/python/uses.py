@@ -17,7 +17,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..condition import Condition
-from .values import Scope, Values
+from .values import Values
 
 
 class Given(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -155,8 +155,7 @@ class Objects(Values):
             node = node.value
         if node.__class__ is not ast.Name:
             return ""
-        looking: Scope | None = self.scope
-        while looking is not None:
+        for looking in self.scope.chain:
             known = looking.imports.get(node.id)
             if known is not None:
                 # What several imports bind, or one under a condition, is left to those who watch single names.
@@ -164,18 +163,13 @@ class Objects(Values):
                 return ".".join([known[0][0], *reversed(parts)]) if plain else ""
             if node.id in looking.bound:
                 return f"{OWN}{node.id}" if not parts and node.id in self.classes else ""
-            looking = looking.parent
         return ""
 
     def object(self, name: str) -> str:
         """The type of what a variable holds."""
-        looking: Scope | None = self.scope
-        while looking is not None:
-            if name in looking.objects:
-                return looking.objects[name]
-            if name in looking.bound:
-                return ""
-            looking = looking.parent
+        for looking in self.scope.chain:
+            if name in looking.objects or name in looking.bound:
+                return looking.objects.get(name, "")
         return ""
 
     def annotated(self, node) -> str:

@@ -54,7 +54,7 @@ VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, 
 class Scope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
-    __slots__ = ("bound", "imports", "is_class", "module", "objects", "parameters", "parent", "values")
+    __slots__ = ("bound", "chain", "imports", "is_class", "objects", "parameters", "parent", "values")
 
     def __init__(self, parent: "Scope | None", is_class: bool) -> None:
         # A class body is no scope for the functions in it.
@@ -65,10 +65,11 @@ class Scope:
         self.imports: dict[str, list[tuple[str, tuple[Condition, ...]]]] = {}
         self.bound: set[str] = set()
         self.values: dict[str, object] = {}
-        # Types of what variables hold, see python_objects.py.
+        # Types of what variables hold, see uses.py.
         self.objects: dict[str, str] = {}
         self.parameters: list[str] = []
-        self.module: Scope = self if parent is None else parent.module
+        # From the innermost scope on.
+        self.chain: tuple[Scope, ...] = (self, *(parent.chain if parent is not None else ()))
 
 
 class Values(Constants):
@@ -82,13 +83,11 @@ class Values(Constants):
 
     def imported(self, name: str, scope: Scope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
         """What a name stands for by the imports in view; empty when it is bound otherwise."""
-        looking: Scope | None = scope or self.scope
-        while looking is not None:
+        for looking in (scope or self.scope).chain:
             if name in looking.imports:
                 return looking.imports[name]
             if name in looking.bound:
                 return []
-            looking = looking.parent
         return []
 
     def text(self, node) -> str | PackagePath | None:
@@ -100,13 +99,9 @@ class Values(Constants):
         return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
 
     def value_Name(self, node: ast.Name) -> Any:
-        scope: Scope | None = self.scope
-        while scope is not None:
-            if node.id in scope.values:
-                return scope.values[node.id]
-            if node.id in scope.bound:
-                return None
-            scope = scope.parent
+        for scope in self.scope.chain:
+            if node.id in scope.values or node.id in scope.bound:
+                return scope.values.get(node.id)
         return None
 
     def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from msgspec import structs
 
 from ...facts.flow import FlowFile, Guard
-from ..launch.follow import Launched, Started
+from ..launch.result import Launched, Started
 from . import nodes as programs_of
 from .calls import Calls, Use
 from .code import Code, Fn, Source, made_in, tail

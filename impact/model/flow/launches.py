@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 import msgspec
 
 from ...facts.store import encodable
-from ..launch.follow import MOST_ACTIONS, Launched, SettingFile, Started, file_values, follow
+from ..launch.follow import MOST_ACTIONS, follow
+from ..launch.result import Launched, SettingFile, Started, file_values
 from ..package import role_of_folder
 from ..workspace import Workspace
 from .escape_analysis import Seeing, Sight

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterFile
-from ..launch.follow import Launched, Remap, Started, follow
+from ..launch.follow import follow
+from ..launch.result import Launched, Remap, Started
 from ..workspace import Workspace
 from .names import NameRefused, Rule, ros1_remapped, ros2_remapped
 

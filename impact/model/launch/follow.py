@@ -31,25 +31,8 @@ from .result import (
     Sources,
     Started,
     Unresolved,
-    file_values,
 )
 from .text import Text, every, known, ros1_value, show, show_condition, truth_of, unknown, within, yaml_value
-
-__all__ = [
-    "Argument",
-    "At",
-    "Launched",
-    "Remap",
-    "Setting",
-    "SettingFile",
-    "Skipped",
-    "Sources",
-    "Started",
-    "Text",
-    "Unresolved",
-    "file_values",
-    "follow",
-]
 
 DEEPEST = 30
 MOST_ACTIONS = 20_000

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from ...facts.launch.actions import Condition, Piece, Value
 from ...facts.launch.parameter_files import extract as parameters
 from ...facts.launch.parameter_files import scalar
+from ...facts.python.text import ARITHMETIC, COMPARISONS
 from ..flow.names import joined
 
 LONGEST = 100_000
@@ -122,6 +123,7 @@ _FUNCTIONS: dict[str, Any] = {
     "str": str, "int": int, "float": float, "bool": bool, "abs": abs, "min": min, "max": max, "len": len,
     "round": round, "any": any, "all": all,
 }  # fmt: skip
+_OF_MATH = frozenset(("sqrt", "sin", "cos", "radians", "degrees", "floor", "ceil"))
 METHODS = frozenset(
     ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title", "split",
      "removeprefix", "removesuffix", "isdigit", "find", "count"),
@@ -191,7 +193,7 @@ class _Evaluator:
             left = self.value(node.left)
             for op, right_node in zip(node.ops, node.comparators, strict=True):
                 right = self.value(right_node)
-                if not _COMPARISONS[type(op)](left, right):
+                if not COMPARISONS[type(op)](left, right):
                     return False
                 left = right
             return True
@@ -212,7 +214,7 @@ class _Evaluator:
 
     def sum(self, node: ast.BinOp) -> Any:
         left, right = self.value(node.left), self.value(node.right)
-        calculate = _SUMS.get(type(node.op))
+        calculate = ARITHMETIC.get(type(node.op))
         if calculate is None:
             raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
         if isinstance(node.op, (ast.Mult, ast.Mod)) and (
@@ -233,43 +235,13 @@ class _Evaluator:
         if isinstance(node.func, ast.Attribute):
             if isinstance(node.func.value, ast.Name) and node.func.value.id == "math":
                 function = getattr(math, node.func.attr, None)
-                if callable(function) and node.func.attr in (
-                    "sqrt",
-                    "sin",
-                    "cos",
-                    "radians",
-                    "degrees",
-                    "floor",
-                    "ceil",
-                ):
+                if callable(function) and node.func.attr in _OF_MATH:
                     return function(*arguments)
             if node.func.attr in METHODS:
                 receiver = self.value(node.func.value)
                 if isinstance(receiver, str):
                     return text_method(receiver, node.func.attr, arguments)
         raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
-
-
-_SUMS = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.FloorDiv: lambda a, b: a // b,
-    ast.Mod: lambda a, b: a % b,
-}
-_COMPARISONS = {
-    ast.Eq: lambda a, b: a == b,
-    ast.NotEq: lambda a, b: a != b,
-    ast.Lt: lambda a, b: a < b,
-    ast.LtE: lambda a, b: a <= b,
-    ast.Gt: lambda a, b: a > b,
-    ast.GtE: lambda a, b: a >= b,
-    ast.In: lambda a, b: a in b,
-    ast.NotIn: lambda a, b: a not in b,
-    ast.Is: lambda a, b: a is b or a == b,
-    ast.IsNot: lambda a, b: not (a is b or a == b),
-}
 
 
 def ros1_value(text: str, type_: str = "auto") -> Any:
