@@ -139,6 +139,7 @@ def _lost(view: View, package, install, folder: str) -> bool:
     if not view.certain(install.conditions) or package.build.unresolved:
         return False
     told = [e.item for e in package.build.exports if "include" in e.how and view.certain(e.conditions)]
+    told.extend(place for target in package.build.targets for place in target.installed_includes)
     if any("$" in item or item.rstrip("/").endswith("include/include") for item in told):
         return False
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]

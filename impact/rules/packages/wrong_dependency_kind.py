@@ -12,7 +12,8 @@ Why it breaks
     node imports.
 
 Severity
-    error where nothing that is declared brings the headers that compiled code includes; warning; note where rosdep
+    error where nothing that is declared brings the headers that compiled code includes, and where the build farm, which
+    installs no dependencies to run, lacks what CMake or the compiler needs; warning; note where rosdep
     installs the package all the same (declared for running, needed to build), and where what is needed to run is
     declared for tests.
 
@@ -32,6 +33,7 @@ from ...model.view import View
 from ..evidence import circular
 from ..fix_actions import Declare, Remove
 from ..rule import Hit, rule
+from .clean_machine import doubts_of_chance
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
 _FOR_RUN = frozenset({"exec", "build_export"})
@@ -63,6 +65,8 @@ def wrong_dependency_kind(view: View):
                         severity = "warning" if name in view.workspace.packages or kinds == {"test"} else "note"
                     else:
                         severity = "warning"
+                    if not doubts_of_chance(view, package, need):
+                        severity = "error"  # the build farm does not install it
                     told.add(name)
                     kind = "for tests" if kinds == {"test"} else "for running"
                     yield Hit(
