@@ -108,7 +108,8 @@ ROWS = {
     "an installed header that nobody can compile": (
         "removed-header", "melodic",
         catkin(
-            "sled", "", "catkin_package(INCLUDE_DIRS include)\ninstall(DIRECTORY include/ DESTINATION include)", "std_srvs",
+            "sled", "", "catkin_package(INCLUDE_DIRS include)\ninstall(DIRECTORY include/ DESTINATION include)",
+            "std_srvs",
             include__sled__seat_h="#include <std_srvs/SetSled.h>\n",
         ),
         {"error"},
