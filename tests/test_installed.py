@@ -134,7 +134,7 @@ def test_one_finding_for_each_package_and_library_counts_the_files_and_gives_the
             "anchor",
             "src/anchor/package.xml",
             "libpcl_common.so.1.12",
-            "`libpcl_common.so.1.12`, which `anchor/lib/anchor/one` and 1 more file need, is not there: "
+            "`libpcl_common.so.1.12`, needed by `anchor/lib/anchor/one` and 1 more file, is not available: "
             "ubuntu noble has pcl 1.14.0",
             "rebuild winch, anchor in this order",
         ),
@@ -142,7 +142,7 @@ def test_one_finding_for_each_package_and_library_counts_the_files_and_gives_the
             "winch",
             "src/winch/package.xml",
             "libpcl_common.so.1.12",
-            "`libpcl_common.so.1.12`, which `winch/lib/libwinch.so` needs, is not there: ubuntu noble has pcl 1.14.0",
+            "`libpcl_common.so.1.12`, needed by `winch/lib/libwinch.so`, is not available: ubuntu noble has pcl 1.14.0",
             "rebuild winch, anchor in this order",
         ),
     ]
@@ -295,7 +295,7 @@ def test_a_program_goes_stale_when_its_library_is_replaced(tmp_path, gcc, check,
     assert (status, finding["package"], finding["targets"], finding["help"]) == (
         1, "winch", ["this machine"], "rebuild winch")  # fmt: skip
     assert finding["message"] == (
-        "`libfoo.so.1`, which `winch/lib/winch/run` needs, is gone: this machine has `libfoo.so.2`"
+        "`libfoo.so.1`, needed by `winch/lib/winch/run`, was removed: this machine has `libfoo.so.2`"
     )
 
 
@@ -315,7 +315,7 @@ def test_a_version_of_a_symbol_that_the_library_lost_is_reported(tmp_path, gcc, 
     monkeypatch.setenv("LD_LIBRARY_PATH", str(system))
     _, (finding,), _ = check(ws, "--install", ws / "install")
     assert finding["message"] == (
-        "`FOO_1.2` of `libfoo.so.1`, which `winch/lib/winch/run` needs, is gone: this machine has `FOO_1.1`"
+        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed: this machine has `FOO_1.1`"
     )
 
 
@@ -347,8 +347,8 @@ def test_a_function_that_a_library_lost_is_reported(kind, tmp_path, gcc, check, 
     _, (finding,), _ = check(ws, "--install", ws / "install")
     assert (finding["severity"], finding["subject"], finding["help"]) == ("error", "rope::Drum::turn", "rebuild winch")
     assert finding["message"] == (
-        f"`rope::Drum::turn` of `libdrum.so`, which `winch/lib/winch/{built.name}` needs, is gone: "
-        "no library that is loaded has it"
+        f"`rope::Drum::turn` of `libdrum.so`, needed by `winch/lib/winch/{built.name}`, "
+        "is not found in any library that is loaded"
     )
 
 

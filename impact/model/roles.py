@@ -25,6 +25,8 @@ KINDS = {
 alone is asked for by itself."""
 
 _BUILD_DEPENDS = frozenset({"build", "buildtool", "test"})
+# The day of bloom 0.11.0. Source: its commit 53beb52.
+_FARM_MAKES_NO_TESTS = "2022-04-19"
 _TOOLS = frozenset({"buildtool_export"})
 _PROMISES = _TOOLS | {"build_export"}
 _HANDED_ON = ("ament_export_dependencies", "catkin_depends", "system_depends")
@@ -50,9 +52,14 @@ class Roles:
             known = self._at_hand[package.name, role] = self._view.spread(start) | {package.name}
         return known
 
+    @property
+    def farm_makes_tests(self) -> bool:
+        """Whether the build farm configures packages with tests, as it did before bloom 0.11.0."""
+        return self._view.target.date < _FARM_MAKES_NO_TESTS
+
     def on_build_farm(self, package: Package) -> frozenset[str]:
         """Everything that may be on the machine which builds the package's release: what is declared to build and to
-        test, and not what is declared to run only. Source: bloom, whose Build-Depends are these."""
+        test, but not what is declared to run. Source: bloom's Build-Depends, without those for tests from 0.11.0 on."""
         known = self._on_farm.get(package.name)
         if known is None:
             view = self._view

@@ -46,13 +46,13 @@ NEW = OLD.replace("_plugin: checker", "_plugins: [checker]")
 def test_an_old_name_and_a_new_one(told):
     ((line, targets, message, cure),) = told(OLD, "humble", "jazzy")
     assert (line, targets, cure) == (3, "jazzy", "set `progress_checker_plugins`")
-    assert message.startswith("`progress_checker_plugin` is no longer a parameter of nav2_controller 1.3.")
+    assert message.startswith("the parameter `progress_checker_plugin` is no longer declared by nav2_controller 1.3.")
 
 
 def test_a_name_that_is_not_there_yet(told):
     ((line, targets, message, cure),) = told(NEW, "humble", "jazzy")
     assert (line, targets, cure) == (3, "humble", "set `progress_checker_plugin`")
-    assert message.startswith("`progress_checker_plugins` is not yet a parameter of nav2_controller 1.1.")
+    assert message.startswith("the parameter `progress_checker_plugins` is not declared by nav2_controller 1.1.")
 
 
 @pytest.mark.parametrize(
@@ -132,4 +132,4 @@ def test_a_few_are_told_one_by_one(told):
 def test_many_of_one_owner_are_told_together(told):
     ((line, _, message, _),) = told(WHEELS, "humble")
     assert line == 6
-    assert message.startswith("`speed_scaling.command_interface` and 4 more that the same file sets are not yet param")
+    assert message.startswith("`speed_scaling.command_interface` and 4 more parameters of this file are not declared")

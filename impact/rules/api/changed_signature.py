@@ -68,7 +68,7 @@ _EARLY = {
     "override": f"this method does not override `{{subject}}` in {_LATER}",
     "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
 }
-_ACCEPTED = "accepted by {upstream}[[ {version}]][[ in {standard}]][[ ({horizon})]]"
+_REVIEWED = f"{UPSTREAM}[[ in {{standard}}]][[ ({{horizon}})]]"
 
 
 @rule(
@@ -77,8 +77,8 @@ _ACCEPTED = "accepted by {upstream}[[ {version}]][[ in {standard}]][[ ({horizon}
     texts={
         **{form: Text(text, _HELP) for form, text in _LOST.items()},
         **{f"{form} early": Text(text, _HELP) for form, text in _EARLY.items()},
-        "reviewed": Text(f"`{{subject}}` is no longer {_ACCEPTED}", "{advice}"),
-        "reviewed early": Text(f"`{{subject}}` is not {_ACCEPTED}[[; it was added in {{since}}]]", "{advice}"),
+        "reviewed": Text(f"`{{subject}}` is no longer accepted by {_REVIEWED}", "{advice}"),
+        "reviewed early": Text(f"`{{subject}}` is not available in {_REVIEWED}[[ (added in {{since}})]]", "{advice}"),
     },
 )
 def changed_signature(view: View):

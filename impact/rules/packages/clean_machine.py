@@ -18,8 +18,6 @@ ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program")
 """How CMake asks for something, so that the configuration stops without it."""
 _STARTED = frozenset(("launch", "plugin", "shell"))
 _TEST_HEADERS = ("gtest/", "gmock/")
-# The day of bloom 0.11.0, whose packages are built without tests on the build farm. Source: its commit 53beb52.
-_FARM_BUILDS_NO_TESTS = "2022-04-19"
 # What a package that generates messages hands on to whoever uses them.
 _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
@@ -117,10 +115,10 @@ def _unknown(view: View, package: Package, need: Need, name: str) -> tuple[Doubt
     what is needed."""
     if _is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
         return (Doubt.INCOMPLETE,)
-    farm_tests = view.target.date < _FARM_BUILDS_NO_TESTS
-    if need.role == "test" and not farm_tests and view.answered(need.providers, view.brought_to_workspace):
-        return (Doubt.LUCKY,)
-    return (Doubt.INCOMPLETE,) if need.providers[0].kind == "system" and view.sealed(package) else ()
+    if need.providers[0].kind == "system" and view.sealed(package):
+        return (Doubt.INCOMPLETE,)
+    together = need.role == "test" and not view.roles.farm_makes_tests
+    return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
 
 
 def _is_grouped(package: Package) -> bool:

@@ -75,6 +75,7 @@ def _is_lost(view: View, package, install, folder: str) -> bool:
     if not view.certain(install.conditions) or package.build.unresolved:
         return False
     exported = [e.item for e in package.build.exports if "include" in e.how and view.certain(e.conditions)]
+    exported.extend(place for target in package.build.targets for place in target.installed_includes)
     if any("$" in item or item.rstrip("/").endswith("include/include") for item in exported):
         return False
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]

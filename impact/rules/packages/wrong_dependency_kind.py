@@ -12,7 +12,8 @@ Why it breaks
     node imports.
 
 Severity
-    error where nothing that is declared brings the headers that compiled code includes; warning; note where rosdep
+    error where nothing that is declared brings the headers that compiled code includes, and where the build farm, which
+    installs no dependencies to run, lacks what CMake or the compiler needs; warning; note where rosdep
     installs the package all the same (declared for running, needed to build), and where what is needed to run is
     declared for tests.
 
@@ -34,6 +35,7 @@ from ..fix_actions import Declare, Remove
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
+from .clean_machine import doubts_of_chance
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
 _FOR_RUN = frozenset({"exec", "build_export"})
@@ -86,6 +88,8 @@ def wrong_dependency_kind(view: View):
                     # rosdep installs run dependencies along, so only the order of a clean build suffers
                     comes = (old or kinds <= {"exec"}) and name not in view.workspace.packages and kinds != {"test"}
                     doubts = (Doubt.DISPENSABLE if comes else Doubt.LATE,)
+                    if not doubts_of_chance(view, package, need):
+                        doubts = ()  # the build farm does not install it
                     seen.add(name)
                     kind = "build, for tests" if kinds == {"test"} else "build, to run"
                     data = {"tag": "build_depend" if old else "depend"}

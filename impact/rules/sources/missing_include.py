@@ -41,8 +41,9 @@ from ...targets.providers.includes import Machine, announced, offered
 from ...targets.providers.message_headers import package_of, type_in
 from ...targets.providers.standard import bit_of, named_by, offering, oldest
 from ..fix_actions import Insert
-from ..rule import Hit, rule
-from ..severity import Doubt, Repeats
+from ..rule import Diagnostic, rule
+from ..severity import Doubt, Repeats, severity
+from ..text import Text
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
 # Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
@@ -53,13 +54,26 @@ _EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTra
 _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
 
 
-@rule(severity="warning")
+_LOST = "`{name}` is used without `<{subject}>`, "
+
+
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "dropped": Text(_LOST + "which {by} {version}[[ of {horizon}]] no longer brings along", "#include <{subject}>"),
+        "never": Text(
+            _LOST + "and nothing that is included brings it along with {by} {version}[[ of {horizon}]]",
+            "#include <{subject}>",
+        ),
+    },
+)
 def missing_include(view: View):
     # Macros that a file of the workspace defines, maybe where nothing else does.
     defined = frozenset().union(*(package.digest.defined for package in view.workspace))
     for package in view:
         reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
-        told, year = set(), view.language(package)
+        reported, year = set(), view.language(package)
         repeats = Repeats()
         built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
@@ -73,7 +87,7 @@ def missing_include(view: View):
             lost, now = _lost(view, need, reach, year, view.machine, view.earlier_machines), True
             if lost is None and view.later_machine is not None and view.later_active(need.conditions):
                 lost, now = _lost(view, need, reach, year, view.later_machine, (view.machine,)), False
-            if lost is None or (need.at.path, lost.header) in told:
+            if lost is None or (need.at.path, lost.header) in reported:
                 continue
             if lost.plain and (asked := view.language_asked(package)) > year:
                 # What packages from elsewhere ask for is looked up for the few that are left.
@@ -91,25 +105,18 @@ def missing_include(view: View):
             sure = (
                 need.at.path in compiled and lost.sure and need.role == "build" and view.certain(need.conditions)
             )
-            bad = "error" if sure and now else "warning" if here else "note"
-            if sure and not now:
-                bad = repeats.severity(lost.by, Doubt.UPCOMING)
             if lost.plain and not lost.once and not (sure and now):
                 continue
-            told.add((need.at.path, lost.header))
-            where = "" if now else f" of {view.horizon}"
-            how = (
-                f", which {lost.by} {lost.version}{where} no longer brings along"
-                if lost.once
-                else f", and nothing that is included brings it along with {lost.by} {lost.version}{where}"
-            )
-            yield Hit(
+            reported.add((need.at.path, lost.header))
+            doubt = None if sure else Doubt.INCOMPLETE if here else Doubt.UNCOMPILED
+            data = {"name": need.name, "by": lost.by, "version": lost.version, "horizon": "" if now else view.horizon}
+            yield Diagnostic(
                 need.at,
                 lost.header,
-                f"`{need.name}` is used without `<{lost.header}>`{how}",
-                f"#include <{lost.header}>",
                 package.name,
-                severity=bad,
+                data,
+                kind="dropped" if lost.once else "never",
+                severity=repeats.severity(lost.by, Doubt.UPCOMING) if sure and not now else severity(doubt),
                 fix=_included(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
 

@@ -65,8 +65,8 @@ _HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
     severity="error",
     texts={
         "symbol": Text(
-            "`{subject}`[[ of `{library}`]][[ and {symbols}]], needed by `{file}`[[ and {files}]], not found in any "
-            "library that is loaded",
+            "`{subject}`[[ of `{library}`]][[ and {symbols}]], needed by `{file}`[[ and {files}]], is not found "
+            "in any library that is loaded",
             _HELP,
         ),
         "gone": Text(
