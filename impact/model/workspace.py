@@ -15,7 +15,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
@@ -32,6 +32,10 @@ from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
+
+if TYPE_CHECKING:
+    from ..targets.asked_versions import AskedVersions
+    from .api import Changes
 
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
@@ -357,12 +361,23 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
     return _names_interface(rest, _stems(names))
 
 
-def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched, jobs: int | None = None) -> Workspace:
+def link(
+    tree,
+    gathered: Gathered,
+    store,
+    ros: int | None,
+    watched: Watched,
+    jobs: int | None = None,
+    discovered: Discovered | None = None,
+    asked: AskedVersions | None = None,
+) -> Workspace:
     """Joins the facts of a tree into a workspace. ros: 1 or 2, None to tell it from the manifests. store remembers
-    digests; None joins everything anew. jobs: processes to use, all available cores when None."""
-    discovered = discover(tree, gathered)
+    digests; None joins everything anew. jobs: processes to use, all available cores when None. discovered: the packages
+    of the tree, where they are known. asked: the versions of other packages that uses may be wrong in, all when None.
+    """
+    discovered = discovered or discover(tree, gathered)
     ros = ros or generation(discovered, gathered)
-    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores())
+    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
     return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest())
 
@@ -427,9 +442,18 @@ def _called(build: Build, declared: str) -> str:
 
 
 class _Linker:
-    def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched, jobs: int):
+    def __init__(
+        self,
+        tree,
+        gathered: Gathered,
+        discovered: Discovered,
+        ros: int,
+        watched: Watched,
+        jobs: int,
+        asked: AskedVersions | None,
+    ):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
-        self.jobs = jobs
+        self.jobs, self.asked = jobs, asked
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
         for entry in tree.entries():
             owner = discovered.owner(entry.path)
@@ -533,7 +557,8 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        versions = f"{self.code}{limits_stamp()} {self.watched.version}"
+        asked = self.asked.identity if self.asked is not None else ""
+        versions = f"{self.code}{limits_stamp()} {self.watched.version} {asked}"
         about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
@@ -610,8 +635,18 @@ class _Linker:
             self.tree.read,
             self.watched,
             self.home,
+            self.asked,
+            self.changing,
         )
         return digest, read
+
+    @cached_property
+    def changing(self) -> Changes | None:
+        """C++ names of other packages that are not the same in all versions which are asked about."""
+        from .api import Changes
+
+        surfaces = self.watched.surfaces
+        return Changes(surfaces.lines, self.asked, surfaces.history) if surfaces is not None else None
 
     def ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
         """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
