@@ -6,7 +6,7 @@ What the files themselves say is read in cpp/uses.py and members_python.py.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..targets.surface.fields import ROS1_SUFFIXES, Definition, Fields, Member
@@ -105,9 +105,16 @@ def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: F
 
 class Scope:
     """The interfaces that a file can name, with those nested in them. asked: the versions that members may be missing
-    in, all when None. changing: names of members that are."""
+    in, all when None. home: packages whose members are not looked for. changing: names of members that may be missing.
+    """
 
-    def __init__(self, included: Iterable[Interface], table: Fields, asked: AskedVersions | None = None):
+    def __init__(
+        self,
+        included: Iterable[Interface],
+        table: Fields,
+        asked: AskedVersions | None = None,
+        home: Collection[str] = frozenset(),
+    ):
         self.table = table
         self._lacking: dict[Interface, frozenset[str]] = {}
         # What headers declare, kept by whoever reads them.
@@ -123,7 +130,9 @@ class Scope:
             if history is None or definition is None:
                 continue
             self.definitions[interface] = definition
-            if asked is None:
+            if interface.package in home:
+                self._lacking[interface] = frozenset()
+            elif asked is None:
                 self._lacking[interface] = definition.changing
             else:
                 versions = tuple(version for version, _ in asked.of(interface.package, interface.ros))

@@ -717,7 +717,7 @@ class _Join:
         # Interfaces that come along with other headers are told by their names.
         kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
         meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
-        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table, asked).changing
+        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table, asked, self.home).changing
         if not changing:
             return
         short = {name for name in changing if len(name) < 4}
@@ -736,7 +736,7 @@ class _Join:
             key = frozenset((*included, *named))
             scope = scopes.get(key)
             if scope is None:
-                scope = scopes[key] = Scope(key, table, asked)
+                scope = scopes[key] = Scope(key, table, asked, self.home)
             if not scope.changing & spoken:
                 continue
             words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
@@ -831,13 +831,13 @@ class _Join:
         table, asked = self.watched.fields, self.asked
         if table is None:
             return
-        wanted = [path for path, facts in files.items() if may_use_interfaces(facts, table, asked)]
+        wanted = [path for path, facts in files.items() if may_use_interfaces(facts, table, asked, self.home)]
         for path, facts in self.look(wanted, "interfaces_python").items():
             used = interfaces_used(facts.members, table)
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
-                scope = Scope((interface for interface in used if interface.ros == ros), table, asked)
+                scope = Scope((interface for interface in used if interface.ros == ros), table, asked, self.home)
                 for use, found in changing_members(facts.members, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:

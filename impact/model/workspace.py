@@ -423,6 +423,7 @@ class _Joined(NamedTuple):
 _JOIN_BYTES, _JOIN_BYTES_OF_FILE = 3 << 20, 20 << 10
 # Of a package: paths that its CMake looks for.
 _REMEMBERED = 5_000_000
+_INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 
 
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]], path: str):
@@ -570,10 +571,16 @@ class _Linker:
 
     @cached_property
     def home(self) -> frozenset[str]:
-        """Packages of the tree of which surfaces are stored: what was released of them does not count here."""
+        """Packages of the tree of which surfaces are stored, or that define interfaces: what was released of them does
+        not count here."""
         stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
-        places = self.discovered.packages
-        return frozenset(p.name for p in places if p.name in stored and _manifest(self.gathered, p.manifest_path))
+        kinds = self.gathered.kinds
+        places = (p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path))
+        return frozenset(
+            p.name
+            for p in places
+            if p.name in stored or any(kinds.get(path) in _INTERFACES for path in self.paths_of[p.path])
+        )
 
     @cached_property
     def _extras_key(self) -> str:

@@ -390,11 +390,12 @@ def extract(data: bytes) -> CppFile:
     )
 
 
-_NAMESPACE = re.compile(r"\bnamespace\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
+# Every alternative starts with its keyword, so that the search skips plain code; what stands before is looked at after.
+_NAMESPACE = re.compile(r"namespace(?<!\wnamespace)\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
 _TYPE = re.compile(
-    r"\b(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}"
-    r"(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
-    r"|\busing\s{1,20}([^\W\d]\w*)\s{0,20}=|\btypedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
+    r"(?:struct(?<!\wstruct)|class(?<!\wclass)|union(?<!\wunion)|enum(?<!\wenum)(?:\s+class|\s+struct)?)\s{1,20}"
+    r"(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
+    r"|using(?<!\wusing)\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef(?<!\wtypedef)\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
 )
 _MOST_TYPES = 400
 

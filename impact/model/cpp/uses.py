@@ -82,7 +82,7 @@ class ApiUses:
             return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
         if known is not None or scope.endswith(_INTERFACES):
             return False
-        return scope in vocabulary.classes or not vocabulary.has_space(head)
+        return (scope in vocabulary.classes or not vocabulary.has_space(head)) and self._may_be_any(word, text, end)
 
     def _may_be_any(self, word: str, text: str, end: int) -> bool:
         """Whether any of the names that end so may be used in a way that differs between versions."""
