@@ -336,6 +336,17 @@ class Vocabulary:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
 
+    @cached_property
+    def virtual(self) -> frozenset[str]:
+        """Last parts of the methods that are looked for and that others may override."""
+        return frozenset(
+            last
+            for package, known in self._known.items()
+            if package not in self.home
+            for last, names in known.by_last.items()
+            if any(known.names[name].virtual for name in names)
+        )
+
     def line(self, full: str) -> list[str]:
         """A class and those that it is derived from, nearest first."""
         found = [full]

@@ -273,13 +273,8 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
-        if not code.may_derive:
-            return
-        virtual = {
-            word for word in words
-            if any(names[name].virtual for name in self.vocabulary.by_last(word)) and code.may_declare(word)
-        }  # fmt: skip
-        for class_ in code.file.classes if virtual else ():
+        virtual = {word for word in words & self.vocabulary.virtual if code.may_declare(word)}
+        for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
