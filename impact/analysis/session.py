@@ -13,10 +13,12 @@ from ...edges.limits import limits
 from ..config import Config, ConfigError, load, parse
 from ..facts.extract import Gathered, gather
 from ..facts.store import Store
+from ..model.discovery import discover
 from ..model.flow.file_selection import code_kinds
 from ..model.view import View
-from ..model.workspace import Workspace, link
+from ..model.workspace import Workspace, generation, link
 from ..rules.rule import Rule, all_rules
+from ..targets.asked_versions import AskedVersions
 from ..targets.providers.providers import default_providers
 from ..targets.resolve import Chosen, choose_targets
 from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
@@ -104,9 +106,12 @@ def open_workspace(
         second = code_kinds(tree) if asks_flow else None
         watched = memo.load_tracked_names(store)
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second, along=watched.searches)
-        workspace = link(tree, gathered, store, None, watched, options.jobs)
+        discovered = discover(tree, gathered)
+        ros = generation(discovered, gathered)
+        targets = choose_targets(options.targets, config, ros, tree)
+        asked_versions = AskedVersions(chosen.target for chosen in targets)
+        workspace = link(tree, gathered, store, ros, watched, options.jobs, discovered, asked_versions)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
-        targets = choose_targets(options.targets, config, workspace, tree)
         asked = frozenset(chosen.target.distro for chosen in targets)
         views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
         installed, shelves = None, ()

@@ -14,7 +14,7 @@ from bisect import bisect_right
 
 from tree_sitter import Node, Parser
 
-from .cpp import exports_of, scan
+from .cpp import EXPORTING, exports_of, scan
 from .flow import Alias, Assignment, Class, Expr, FlowFile, Member
 from .flow_cpp_clean import Cleaned, cleaned, cleaned_further
 from .flow_cpp_grammar import (
@@ -45,7 +45,6 @@ from .place import Problem
 
 PARSER = Parser(LANGUAGE)
 INCLUDED = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]", re.MULTILINE)
-EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
 
 
 def extract(data: bytes) -> FlowFile:

@@ -242,12 +242,14 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
         # No use reaches back over the end of the statement before it.
         far = max(0, at - _FAR)
         places.append((at, text[max(far, text.rfind(";", far, at)) : at]))
+    fitting = {"": places}
     for number, pattern in enumerate(patterns if places else ()):
-        before = _compiled(rf"(?:{pattern.before})\Z").search if pattern.before else None
+        before = pattern.before
+        if before not in fitting:
+            search = _compiled(rf"(?:{before})\Z").search
+            fitting[before] = [place for place in places if search(place[1]) is not None]
         checked = not (pattern.file or pattern.unless)
-        for at, ahead in places:
-            if before is not None and before(ahead) is None:
-                continue
+        for at, ahead in fitting[before]:
             types = _fits(pattern, text, at + len(word), ahead)
             if types is None or (pattern.inside == "class" and not _in_class(text, at)):
                 continue

@@ -5,13 +5,24 @@ What the files themselves say is read in cpp/uses.py.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Iterable, Mapping
-from functools import cached_property
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..targets.surface.offers import Standing, standing_at
+from ..targets.surface.offers_cpp import (
+    callable_forms,
+    default_changed,
+    is_untold,
+    lost_forms,
+    refused_by,
+    virtual_forms,
+)
+
 if TYPE_CHECKING:
-    from ..targets.surface.changes import Event, Line, Overload
+    from ..targets.asked_versions import AskedVersions
+    from ..targets.surface.changes import Event, Form, Line
+    from ..targets.surface.store import History
 
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
@@ -41,79 +52,114 @@ class Found(NamedTuple):
     through: tuple[str, ...]
 
 
+class AskedForm(NamedTuple):
+    """How a version that is asked about has a changing name. version, last: as stored, it and the one before the last
+    change up to it. history: gives all versions; None where they are not to be had."""
+
+    standing: Standing
+    version: str
+    last: str
+    first: str
+    history: Callable[[], History | None] | None
+
+
 class Name:
-    """A changing name, by all that happened to it; most of it is worked out where it is asked for. what: as in
-    surface_changes.Told. there: some version has it not, or warns of it."""
+    """A changing name, as the versions that are asked about have it; most of it is worked out where it is needed. what:
+    as in surface_changes.Told. there: one of the versions has it not, or warns of it."""
 
-    def __init__(self, package: str, events: tuple[Event, ...]):
-        self.package, self.events = package, events
-        self.what = events[0].told[0].what
-        self.there = any(t.kind in _COMES_OR_GOES and "overload" not in t.aspects for e in events for t in e.told)
-
-    @cached_property
-    def forms(self) -> tuple[tuple[Overload, ...], ...]:
-        """The overloads of each form that it had."""
-        forms = (form for event in self.events for form in (event.had, event.has) if form is not None)
-        return tuple(dict.fromkeys(form.overloads for form in forms))
-
-    @cached_property
-    def virtual(self) -> bool:
-        """Whether it is a method that some version lets others override."""
-        return self.what == "method" and any("virtual" in one.traits for form in self.forms for one in form)
-
-    @cached_property
-    def pure(self) -> bool:
-        """Whether it is a method that some version makes others implement, and some does not."""
-        if self.what != "method":
-            return False
-        pure = {any("pure" in one.traits for one in form.overloads) if form is not None else False
-                for event in self.events for form in (event.had, event.has)}  # fmt: skip
-        return len(pure) == 2
-
-    @cached_property
-    def typed(self) -> bool:
-        """Whether parameters whose types show in a call are of other types in some version."""
-        types = [{one.types for one in form} for form in self.forms]
-        differing = {type_ for one in types for other in types for those in one ^ other for type_ in those}
-        return any(_SHOWING.search(type_) for type_ in differing)
-
-    @cached_property
-    def defaults(self) -> bool:
-        """Whether a default is another in some version."""
-        return any(told.kind == "default" for event in self.events for told in event.told)
+    def __init__(self, package: str, name: str, what: str, forms: tuple[AskedForm, ...]):
+        self.package, self.name, self.what, self.forms = package, name, what, forms
+        self.there = any(not one.standing.there or one.standing.deprecated for one in forms)
+        self._by_count: dict[int, tuple[bool, bool]] = {}
 
     @property
     def matters(self) -> bool:
-        """Whether any use of it can be told to differ between versions."""
-        return self.there or self.virtual or self.typed or self.defaults or self.counts
+        """Whether a use of it may be wrong in one of the versions."""
+        return self.there or any(_others(one.standing) or _has_other_default(one.standing) for one in self.forms)
 
-    @property
-    def counts(self) -> bool:
-        """Whether it does not take equally many arguments in all versions."""
-        return len({frozenset((one.fewest, one.most) for one in form) for form in self.forms}) > 1
+    @cached_property
+    def virtual(self) -> bool:
+        """Whether a method that overrides it may override nothing in one of the versions."""
+        return self.what == "method" and any(
+            not _signatures(form) <= _signatures(one.standing.here)
+            for one in self.forms
+            for form in _others(one.standing)
+        )
 
-    def differs(self, how: str, arguments: int, given: tuple[str, ...], templated: bool = False) -> bool:
-        """Whether a use of it is not the same to all versions."""
+    @cached_property
+    def pure(self) -> bool:
+        """Whether it is a method that one of the versions makes others implement, and versions beside it do not."""
+        return self.what == "method" and any(
+            _is_pure(here) and ((past and not _is_pure(before)) or (future and not _is_pure(after)))
+            for (_, _, here, before, after, past, future), *_ in self.forms
+        )
+
+    @cached_property
+    def refuses(self) -> frozenset[str]:
+        """What arguments may show themselves to be and one of the versions does not take, but one beside it may."""
+        found: set[str] = set()
+        for one in self.forms:
+            here = callable_forms(one.standing.here)
+            types = {other.types for form in _others(one.standing) for other in callable_forms(form)}
+            if types - {other.types for other in here}:
+                found.update(*(refused_by(type_) for other in here for type_ in other.types))
+        return frozenset(found)
+
+    def differs(self, how: str, arguments: int, given: Collection[str], templated: bool = False) -> bool:
+        """Whether a use of it may be wrong in one of the versions."""
         if self.there or how in ("override", "implement"):
             return True
         if how != "call":
             return False
-        if self.typed and any(given):
+        if not self.refuses.isdisjoint(given):
             return True
         if arguments < 0:
             return False
-        if self.defaults and any(one.fewest <= arguments < one.most for form in self.forms for one in form):
-            return True
-        if any(not any(one.accepts(arguments) for one in form) for form in self.forms):
-            return True
-        # An argument of a template may have to be written.
-        return not templated and any(one.most == arguments for one in self._passing)
+        known = self._by_count.get(arguments)
+        if known is None:
+            known = self._by_count[arguments] = self._differs(arguments)
+        return known[templated]
 
-    @cached_property
-    def _passing(self) -> tuple[Overload, ...]:
-        """Overloads that not all versions have."""
-        kept = set(self.forms[0]).intersection(*self.forms) if self.forms else set()
-        return tuple({one for form in self.forms for one in form} - kept)
+    def _differs(self, arguments: int) -> tuple[bool, bool]:
+        """Whether a call with so many arguments may be wrong, and the same where its template arguments are written."""
+        unwritten = False
+        for standing, version, last, first, history in self.forms:
+            here = [one for one in callable_forms(standing.here) if one.accepts(arguments)]
+            if not here:
+                others = (one for form in _others(standing) for one in callable_forms(form))
+                if any(one.accepts(arguments) for one in others):
+                    return True, True
+                continue
+            relying = _has_other_default(standing) and all(one.most < 0 or arguments < one.most for one in here)
+            if relying and (history is None or default_changed(history(), self.name, last, first, arguments)):
+                return True, True
+            if not unwritten and any(one.accepts(arguments) for one in lost_forms(standing.before, standing.here)):
+                # An argument of a template may have to be written.
+                known = history() if history is not None else None
+                forms = standing.here, standing.before
+                unwritten = known is None or is_untold(known, self.name, *forms, version, last, arguments)
+        return unwritten, False
+
+
+def _others(standing: Standing) -> list[Form]:
+    """The forms that versions beside one have and that are not as it has it."""
+    return [form for form in (standing.before, standing.after) if form is not None and form != standing.here]
+
+
+def _has_other_default(standing: Standing) -> bool:
+    """Whether the last change up to a version was one of defaults alone, which forms do not tell."""
+    return bool(standing.past) and all(told.kind == "default" for told in standing.past[-1].told)
+
+
+def _signatures(form: Form | None) -> frozenset[tuple[tuple[str, ...], bool]]:
+    """The parameters of what may be overridden, and whether it is const."""
+    return frozenset((one.types, "const" in one.traits) for one in virtual_forms(form))
+
+
+def _is_pure(form: Form | None) -> bool:
+    """Whether a form makes others implement it."""
+    return any("pure" in one.traits for one in virtual_forms(form))
+
 
 class Known(NamedTuple):
     """What is asked of one package again and again. names: changing names of C++. by_last: those of which a
@@ -133,31 +179,75 @@ class Known(NamedTuple):
 
 class Changes:
     """Where what changed in packages is asked for. lines: those of a package by ROS generation, none for one that is
-    not known."""
+    not known. asked: the versions that a use may be wrong in, all when None."""
 
-    def __init__(self, lines: Callable[[str], Mapping[int, Line]]):
-        self._lines = lines
+    def __init__(
+        self,
+        lines: Callable[[str], Mapping[int, Line]],
+        asked: AskedVersions | None = None,
+        history: Callable[[str, int], History | None] | None = None,
+    ):
+        self._lines, self._asked, self._history = lines, asked, history
         self._known: dict[tuple[str, int], Known | None] = {}
 
     def known(self, package: str, ros: int = 0) -> Known | None:
         """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
         key = package, ros
         if key not in self._known:
-            lines = [line for generation, line in self._lines(package).items() if ros in (0, generation)]
-            self._known[key] = _known(package, lines) if lines else None
+            lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
+            asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
+            self._known[key] = _known(package, asked) if lines else None
         return self._known[key]
+
+    def _forms(self, package: str, ros: int, line: Line) -> _Forms:
+        """What gives, of the events of a name of C++ in a line, how the versions that are asked about have it."""
+        places: dict[int, bool] = {}
+        for version, ahead in self._asked.of(package, ros) if self._asked is not None else ():
+            place = line.place(version)
+            if place is not None:
+                places[place] = ahead and places.get(place, True)
+        history = partial(self._history, package, ros) if self._history is not None else None
+        every = self._asked is None
+        return lambda events: tuple(
+            _asked_forms(events, line, _every_place(events) if every else places, history)
+        )  # fmt: skip
+
+
+_Forms = Callable[[Sequence["Event"]], tuple[AskedForm, ...]]
+
+
+def _every_place(events: Sequence[Event]) -> Mapping[int, bool]:
+    """The first version, and those that the events are of."""
+    return dict.fromkeys((0, *(event.place for event in events)), False)
+
+
+def _asked_forms(
+    events: Sequence[Event],
+    line: Line,
+    places: Mapping[int, bool],
+    history: Callable[[], History | None] | None,
+) -> Iterator[AskedForm]:
+    """How versions have a name. places: of the versions in their line, and of each whether only an update brings it."""
+    for place, ahead in places.items():
+        standing = standing_at("c++", events, place)
+        if ahead and not standing.past:
+            continue  # what an update breaks, it changes itself
+        if ahead:
+            standing = standing._replace(deprecated=False, after=None, future=())
+        first = standing.past[-1].place if standing.past else 0
+        yield AskedForm(standing, line.versions[place], line.versions[first - 1], line.versions[first], history)
 
 
 _INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))
 _MEMBERS = frozenset(("method", "field", "constructor", "destructor", "conversion"))
 
 
-def _known(package: str, lines: Iterable[Line]) -> Known:
+def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
     names: dict[str, Name] = {}
     by_last: dict[str, dict[str, None]] = {}
     bases: dict[str, dict[str, None]] = {}
     classes: dict[str, None] = {}
-    for line in lines:
+    for line, forms_of in lines:
         for full, events in line.events.get("c++", {}).items():
             outer, _, last = full.rpartition("::")
             if not last.isidentifier() and last not in ASSIGNING:
@@ -165,8 +255,8 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
             if "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
                 continue
             before = names.get(full)  # what another generation told of it
-            name = names[full] = Name(package, events if before is None else (*events, *before.events))
-            what = name.what
+            what = events[0].told[0].what
+            names[full] = Name(package, full, what, (*forms_of(events), *(before.forms if before is not None else ())))
             if what in _MEMBERS:
                 classes[outer] = None
             elif what in CLASSES:
@@ -197,12 +287,6 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
         tuple(heads),
         {owner: tuple(those) for owner, those in pure.items()},
     )
-
-
-_COMES_OR_GOES = frozenset(("removed", "added", "moved", "deprecated", "access", "deleted"))
-_SHOWING = re.compile(
-    r"rmw_qos_profile_t|QoS|\bNode\b|Node\*|string|\bchar\*|double|float|bool|(?:shared|unique)_ptr<|Ptr\b"
-)
 
 
 class Vocabulary:
@@ -252,6 +336,17 @@ class Vocabulary:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
 
+    @cached_property
+    def virtual(self) -> frozenset[str]:
+        """Last parts of the methods that are looked for and that others may override."""
+        return frozenset(
+            last
+            for package, known in self._known.items()
+            if package not in self.home
+            for last, names in known.by_last.items()
+            if any(known.names[name].virtual for name in names)
+        )
+
     def line(self, full: str) -> list[str]:
         """A class and those that it is derived from, nearest first."""
         found = [full]
@@ -289,6 +384,13 @@ class Vocabulary:
     def pure(self, full: str) -> tuple[str, ...]:
         """The methods of a class that only some versions make others implement."""
         return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()
+
+    @cached_property
+    def speakers_of_pure(self) -> frozenset[str]:
+        """Last parts of the classes with methods that only some versions make others implement, and of those derived
+        from them."""
+        owners = (owner for package, known in self._known.items() if package not in self.home for owner in known.pure)
+        return frozenset().union(*(self.speakers(owner) for owner in owners))
 
     def constructors(self, word: str) -> tuple[str, ...]:
         """Changing constructors of classes whose name ends so."""

@@ -5,10 +5,13 @@ What the files themselves say is read in cpp/uses.py and members_python.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Collection, Iterable
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..targets.surface.fields import ROS1_SUFFIXES, Definition, Fields, Member
+
+if TYPE_CHECKING:
+    from ..targets.asked_versions import AskedVersions
 
 
 class Interface(NamedTuple):
@@ -100,10 +103,19 @@ def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: F
 
 
 class Scope:
-    """The interfaces that a file can name, with those nested in them."""
+    """The interfaces that a file can name, with those nested in them. asked: the versions that members may be missing
+    in, all when None. home: packages whose members are not looked for. changing: names of members that may be missing.
+    """
 
-    def __init__(self, included: Iterable[Interface], table: Fields):
+    def __init__(
+        self,
+        included: Iterable[Interface],
+        table: Fields,
+        asked: AskedVersions | None = None,
+        home: Collection[str] = frozenset(),
+    ):
         self.table = table
+        self._lacking: dict[Interface, frozenset[str]] = {}
         # What headers declare, kept by whoever reads them.
         self.declared: dict[tuple | None, dict] = {}
         self.definitions: dict[Interface, Definition] = {}
@@ -114,13 +126,20 @@ class Scope:
                 continue
             history = table.history(interface.package, interface.ros)
             definition = history.definition(interface.name) if history is not None else None
-            if definition is None:
+            if history is None or definition is None:
                 continue
             self.definitions[interface] = definition
+            if interface.package in home:
+                self._lacking[interface] = frozenset()
+            elif asked is None:
+                self._lacking[interface] = definition.changing
+            else:
+                versions = tuple(version for version, _ in asked.of(interface.package, interface.ros))
+                self._lacking[interface] = history.lacking(interface.name, versions) if versions else frozenset()
             for members in definition.sections.values():
                 for rows in members.values():
                     waiting.extend(nested(row, interface.ros) for row in rows if row.nested)
-        self.changing = frozenset(name for d in self.definitions.values() for name in d.changing)
+        self.changing = frozenset().union(*self._lacking.values())
         self.by_name: dict[str, list[tuple[Interface, str]]] = {}
         for interface in sorted(self.definitions):
             kind = interface.name.partition("/")[0]
@@ -153,7 +172,7 @@ class Scope:
     def changes(self, type_: Type, name: str) -> str | None:
         """The section in which a value has a member that some versions lack, None when it has not."""
         definition = self.definitions.get(type_.interface)
-        if definition is None or type_.several or name not in definition.changing:
+        if definition is None or type_.several or name not in self._lacking[type_.interface]:
             return None
         return type_.section if definition.members(type_.section, name) else None
 

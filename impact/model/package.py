@@ -33,6 +33,7 @@ from .macros import Macros
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
+    from ..targets.asked_versions import AskedVersions
     from .api import Changes
     from .cpp.resolver import Known
     from .members import Interface as Meant
@@ -320,13 +321,6 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
-    @cached_property
-    def changing_cpp(self) -> Changes | None:
-        """C++ names that surfaces tell to have changed."""
-        from .api import Changes
-
-        return Changes(self.surfaces.lines) if self.surfaces is not None else None
-
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
@@ -359,22 +353,29 @@ def digest_of(
     read: Callable[[str], bytes],
     watched: Watched,
     home: Collection[str] = frozenset(),
+    asked: AskedVersions | None = None,
+    changing: Changes | None = None,
 ) -> Digest:
     """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
     FileFacts; look: as Gathered.look; read: path to bytes, used only to find members and changing names of C++; home:
-    packages of the same workspace, which are not looked for in what changed elsewhere."""
+    packages of the same workspace, which are not looked for in what changed elsewhere; asked: the versions of other
+    packages that uses may be wrong in, all when None; changing: C++ names of other packages that are not alike in
+    those."""
     return _Join(
-        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, look, read, watched, home
+        *(name, path, manifest_path, manifest, build, build_type, kinds, tuple(files)),
+        *(facts, look, read, watched, home, asked, changing),
     ).digest()
 
 
 class _Join:
     def __init__(
-        self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, look, read, watched, home
-    ):
+        self, name, path, manifest_path, manifest, build, build_type, kinds, files,
+        facts, look, read, watched, home, asked, changing,
+    ):  # fmt: skip
         self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
         self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
         self.facts, self.look, self.watched, self.home = facts, look, watched, home
+        self.asked, self.changing = asked, changing
         self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
@@ -614,7 +615,7 @@ class _Join:
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
                         std = text.startswith("std::") and text not in _ANNOUNCED
-                        whole = std or any(text in f.types for f in self.look((path,), "variables_cpp").values())
+                        whole = std or text in self.variables(path)
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             found = self.searched.get(path)
             for word in found.words if found is not None else ():
@@ -715,14 +716,14 @@ class _Join:
         from .cpp.uses import MemberUses
         from .members import Scope, interface_named, interfaces_included
 
-        table = self.watched.fields
+        table, asked = self.watched.fields, self.asked
         if table is None:
             return
         paths = {include.path for resolved in self.resolved.values() for to, include in resolved if to is None}
         # Interfaces that come along with other headers are told by their names.
         kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
         meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
-        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table).changing
+        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table, asked, self.home).changing
         if not changing:
             return
         short = {name for name in changing if len(name) < 4}
@@ -741,7 +742,7 @@ class _Join:
             key = frozenset((*included, *named))
             scope = scopes.get(key)
             if scope is None:
-                scope = scopes[key] = Scope(key, table)
+                scope = scopes[key] = Scope(key, table, asked, self.home)
             if not scope.changing & spoken:
                 continue
             words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
@@ -766,26 +767,29 @@ class _Join:
         from .cpp.resolver import Resolver
         from .cpp.uses import ApiUses
 
-        if self.watched.changing_cpp is None:
+        if self.changing is None:
             return
         spoken = {path: _spoken(facts) for path, facts in self.cpp.items() if path in roles}
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
-        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
+        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.words & ASSIGNING.keys()
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.words & spoken[path] | assigning if path in spoken else set()
-            has_exported = not exported_words.isdisjoint(spoken.get(path, ())) and not exported_words.isdisjoint(
-                self.known(path).code.like_classes
-            )
+            has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
             if not words and not has_exported:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
+            has_exported = (
+                has_exported
+                and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
+                and not exported_words.isdisjoint(self.known(path).code.like_classes)
+            )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             if not words and not has_exported:
                 continue
@@ -830,15 +834,15 @@ class _Join:
         from .members import Scope
         from .python.members import changing_members, interfaces_used, may_use_interfaces
 
-        table = self.watched.fields
+        table, asked = self.watched.fields, self.asked
         if table is None:
             return
         for path, facts in files.items():
-            used = interfaces_used(facts.fields, table) if may_use_interfaces(facts, table) else []
+            used = interfaces_used(facts.fields, table) if may_use_interfaces(facts, table, asked, self.home) else []
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
-                scope = Scope((interface for interface in used if interface.ros == ros), table)
+                scope = Scope((interface for interface in used if interface.ros == ros), table, asked, self.home)
                 for use, found in changing_members(facts.fields, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
@@ -946,6 +950,11 @@ class _Join:
         # tf2 has a Quaternion too.
         message = type_in(name) is not None
         return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
+
+    @cache  # noqa: B019  (as long as the join)
+    def variables(self, path: str) -> frozenset[str]:
+        """The types of which a C++ file of the package declares variables itself."""
+        return frozenset().union(*(found.types for found in self.look((path,), "variables_cpp").values()))
 
     def declared(self, paths: Collection[str]) -> Iterator[DeclaredCpp]:
         """What C++ files of the package declare."""

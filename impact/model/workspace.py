@@ -15,7 +15,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
@@ -32,6 +32,10 @@ from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
+
+if TYPE_CHECKING:
+    from ..targets.asked_versions import AskedVersions
+    from .api import Changes
 
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
@@ -367,12 +371,23 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
     return _names_interface(rest, _stems(names))
 
 
-def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched, jobs: int | None = None) -> Workspace:
+def link(
+    tree,
+    gathered: Gathered,
+    store,
+    ros: int | None,
+    watched: Watched,
+    jobs: int | None = None,
+    discovered: Discovered | None = None,
+    asked: AskedVersions | None = None,
+) -> Workspace:
     """Joins the facts of a tree into a workspace. ros: 1 or 2, None to tell it from the manifests. store remembers
-    digests; None joins everything anew. jobs: processes to use, all available cores when None."""
-    discovered = discover(tree, gathered)
+    digests; None joins everything anew. jobs: processes to use, all available cores when None. discovered: the packages
+    of the tree, where they are known. asked: the versions of other packages that uses may be wrong in, all when None.
+    """
+    discovered = discovered or discover(tree, gathered)
     ros = ros or generation(discovered, gathered)
-    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores())
+    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
     return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest())
 
@@ -418,6 +433,7 @@ class _Joined(NamedTuple):
 _JOIN_BYTES, _JOIN_BYTES_OF_FILE = 3 << 20, 20 << 10
 # Of a package: paths that its CMake looks for.
 _REMEMBERED = 5_000_000
+_INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 
 
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]], path: str):
@@ -437,9 +453,18 @@ def _called(build: Build, declared: str) -> str:
 
 
 class _Linker:
-    def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched, jobs: int):
+    def __init__(
+        self,
+        tree,
+        gathered: Gathered,
+        discovered: Discovered,
+        ros: int,
+        watched: Watched,
+        jobs: int,
+        asked: AskedVersions | None,
+    ):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
-        self.jobs = jobs
+        self.jobs, self.asked = jobs, asked
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
         for entry in tree.entries():
             owner = discovered.owner(entry.path)
@@ -543,7 +568,8 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        versions = f"{self.code}{limits_stamp()} {self.watched.version}"
+        asked = self.asked.identity if self.asked is not None else ""
+        versions = f"{self.code}{limits_stamp()} {self.watched.version} {asked}"
         about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
@@ -555,10 +581,16 @@ class _Linker:
 
     @cached_property
     def home(self) -> frozenset[str]:
-        """Packages of the tree of which surfaces are stored: what was released of them does not count here."""
+        """Packages of the tree of which surfaces are stored, or that define interfaces: what was released of them does
+        not count here."""
         stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
-        places = self.discovered.packages
-        return frozenset(p.name for p in places if p.name in stored and _manifest(self.gathered, p.manifest_path))
+        kinds = self.gathered.kinds
+        places = (p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path))
+        return frozenset(
+            p.name
+            for p in places
+            if p.name in stored or any(kinds.get(path) in _INTERFACES for path in self.paths_of[p.path])
+        )
 
     @cached_property
     def _extras_key(self) -> str:
@@ -620,8 +652,18 @@ class _Linker:
             self.tree.read,
             self.watched,
             self.home,
+            self.asked,
+            self.changing,
         )
         return digest, read
+
+    @cached_property
+    def changing(self) -> Changes | None:
+        """C++ names of other packages that are not the same in all versions which are asked about."""
+        from .api import Changes
+
+        surfaces = self.watched.surfaces
+        return Changes(surfaces.lines, self.asked, surfaces.history) if surfaces is not None else None
 
     def ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
         """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,

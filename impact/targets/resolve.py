@@ -335,14 +335,14 @@ def _newest_lts(distros: Sequence[Known], ros: int) -> str:
 
 
 def choose_targets(
-    asked: Sequence[str], config: Config, workspace: Any, tree: Tree, data: Snapshot | None = None
+    asked: Sequence[str], config: Config, ros: int, tree: Tree, data: Snapshot | None = None
 ) -> tuple[Chosen, ...]:
     """The targets of a run, each with the reason for it.
 
-    asked: texts given after `--target`. config: rosimpact.toml. workspace: its `ros` (1 or 2) tells the generation.
+    asked: texts given after `--target`. config: rosimpact.toml. ros: the generation of the workspace, 1 or 2.
     tree: where CI files are read. Raises TargetError, and ConfigError for surroundings that cannot be read.
     """
-    chosen = _chosen(asked, config, workspace, tree, data)
+    chosen = _chosen(asked, config, ros, tree, data)
     if not (config.underlays or config.rosdep_sources or config.index):
         return chosen
     from .distro.surroundings import surroundings
@@ -351,7 +351,7 @@ def choose_targets(
 
 
 def _chosen(
-    asked: Sequence[str], config: Config, workspace: Any, tree: Tree, data: Snapshot | None
+    asked: Sequence[str], config: Config, ros: int, tree: Tree, data: Snapshot | None
 ) -> tuple[Chosen, ...]:
     if asked:
         return tuple(Chosen(parse_target(text, config, data=data), "asked for") for text in dict.fromkeys(asked))
@@ -363,7 +363,6 @@ def _chosen(
                 check_inside(folder / text.strip(), config, f"{config.path}: [check] targets: {text}")
         return tuple(Chosen(parse_target(text, config, folder, data), reason) for text in config.default_targets)
     known = known_distros(data)
-    ros = getattr(workspace, "ros", 2) or 2
     day = (data or snapshots.default()).date
     repositories = sorted(tree.repositories, key=len, reverse=True)
     texts = _ci_texts(tree, repositories)

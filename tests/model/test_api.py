@@ -37,8 +37,19 @@ LEG = ("namespace leg { class Leg : public arm::Arm { public: void old(); }; }",
        "namespace leg { class Leg : public arm::Arm { public: }; }")  # fmt: skip
 
 
-def changes_of(packages: dict[str, tuple[str, str]]) -> Changes:
-    """What changed from the first to the second version of packages, given the code of their headers."""
+class Asked:
+    """One version of every package, which a target has or only an update of it brings."""
+
+    def __init__(self, version: str, ahead: bool):
+        self._versions = ((version, ahead),)
+
+    def of(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
+        return self._versions
+
+
+def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None) -> Changes:
+    """What changed from the first to the second version of packages, given the code of their headers. asked: as in
+    Changes."""
     lines = Lines()
     for number, version in enumerate(("1.0.0", "2.0.0")):
         surfaces = {}
@@ -51,7 +62,7 @@ def changes_of(packages: dict[str, tuple[str, str]]) -> Changes:
         for package in surfaces:
             lines.add(package, version, (2,), state)
     packed = lines.packed()
-    return Changes(lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {})
+    return Changes(lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {}, asked)
 
 
 @pytest.fixture(scope="module")
@@ -142,6 +153,31 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
 )  # fmt: skip
 def test_what_is_found(text, found, changes):
     assert uses(text, changes) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "second", "update"),
+    [
+        # text, what is found where a target has the first version, the second, or an update brings the second
+        ("arm::Old * o;", [], ["arm::Old"], ["arm::Old"]),
+        ("void g(arm::Arm & a) { a.went(1); }", [], ["arm::Base::went/1"], ["arm::Base::went/1"]),
+        ("void g(arm::Arm & a) { a.f(1); }", [], ["arm::Arm::f/1"], ["arm::Arm::f/1"]),
+        ("void g(arm::Arm & a) { a.f(1, 2); }", ["arm::Arm::f/2"], [], []),
+        ("void g(arm::Arm & a) { a.f(1, 2, 3); }", [], [], []),
+        ("void g(arm::Arm & a) { a.f(h(1, 2) /* , */, \"a,b\"); }", ["arm::Arm::f/2"], [], []),
+        ("void g() { auto a = std::make_shared<arm::Arm>(1); }", [], ["arm::Arm::Arm/1"], ["arm::Arm::Arm/1"]),
+        ("void g() { auto a = std::make_shared<arm::Arm>(1, 2); }", ["arm::Arm::Arm/2"], [], []),
+        ("void g() { arm::Base b; b += 1; }", ["arm::Base::operator+="], [], []),
+        # whether an override is one is left to the rule, where the version or one beside it has another form
+        *[(f"class M : public arm::Arm {{ void tick({given}); }};", *[[f"arm::Base::tick/{count}!"]] * 3)
+          for given, count in (("", 0), ("double d", 1))],
+    ],
+)  # fmt: skip
+def test_what_is_found_is_what_may_be_wrong_in_the_versions_asked_about(text, first, second, update):
+    packages = {"arm": ARM, "leg": LEG}
+    assert uses(text, changes_of(packages, Asked("1.0.0", False))) == first
+    assert uses(text, changes_of(packages, Asked("2.0.0", False))) == second
+    assert uses(text, changes_of(packages, Asked("2.0.0", True))) == update
 
 
 @pytest.mark.parametrize(

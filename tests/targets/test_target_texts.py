@@ -248,17 +248,17 @@ class OneFile:
 )
 def test_files_that_are_looked_into(path, distro, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
-    chosen = choose_targets((), Config(), SimpleNamespace(ros=2), OneFile(path, "FROM ros:humble"))
+    chosen = choose_targets((), Config(), 2, OneFile(path, "FROM ros:humble"))
     assert [item.target.distro for item in chosen] == [distro]
     assert chosen[0].reason
 
 
 def test_asked_for_comes_first_then_the_configuration():
     tree = OneFile("Dockerfile", "FROM ros:humble")
-    asked = choose_targets(("jazzy", "robot", "jazzy"), CONFIG, SimpleNamespace(ros=2), tree)
+    asked = choose_targets(("jazzy", "robot", "jazzy"), CONFIG, 2, tree)
     assert [item.target.name for item in asked] == ["jazzy", "robot"]
     config = CONFIG._replace(default_targets=("lab",))
-    chosen = choose_targets((), config, SimpleNamespace(ros=2), tree)
+    chosen = choose_targets((), config, 2, tree)
     assert [(item.target.name, item.reason) for item in chosen] == [("lab", "named in rosimpact.toml")]
 
 

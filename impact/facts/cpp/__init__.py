@@ -1,6 +1,7 @@
 """C++: the first look at a file (lexical.py), and a closer one at its syntax where somebody asks (code.py)."""
 
 from .lexical import (
+    EXPORTING,
     KEYWORDS,
     CppFile,
     Include,
@@ -16,6 +17,7 @@ from .lexical import (
 )
 
 __all__ = [
+    "EXPORTING",
     "KEYWORDS",
     "CppFile",
     "Include",

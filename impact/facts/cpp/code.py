@@ -254,7 +254,14 @@ class Code:
 
     def may_declare(self, word: str) -> bool:
         """Whether a word may stand behind a type and before a parenthesis."""
-        return self.mentions(word) and _called_pattern(word).search(self._data) is not None
+        if not self.mentions(word):
+            return False
+        data = self._data
+        for match in _called_pattern(word).finditer(data):
+            at = match.start()
+            if data[at - 1 : at] in (b"*", b"&") or _TYPE_AHEAD.search(data, max(0, at - _FAR), at) is not None:
+                return True
+        return False
 
     def may_have_member(self, word: str) -> bool:
         """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
@@ -786,8 +793,11 @@ _SCOPED = frozenset((LAMBDA, _FUNCTION, _CATCH, _EACH, _FOR, _TEMPLATE)) | _STAT
 
 @lru_cache(maxsize=4096)
 def _called_pattern(word: str) -> re.Pattern[bytes]:
-    name = re.escape(word.encode())
-    return re.compile(rb"(?:[\w&*>\]]\s+|[*&])" + name + rb"\s*\(")
+    return re.compile(re.escape(word.encode()) + rb"\s*\(")
+
+
+_TYPE_AHEAD = re.compile(rb"[\w&*>\]]\s+\Z")
+_FAR = 120
 
 
 @lru_cache(maxsize=4096)

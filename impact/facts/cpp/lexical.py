@@ -108,6 +108,7 @@ _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
     r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES)\s*\((?P<arguments>[^;{}]{0,500}?)\)"
 )
+EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
 _PACKAGE_URL = re.compile(r'"package://([A-Za-z]\w*)(?:/([^"\n]*))?"')
 _PACKAGE_CALL = re.compile(
     r"(?:package::getPath|get_package_share_directory|get_package_prefix|get_package_share_path)\s*\(\s*(\")"
@@ -299,15 +300,13 @@ def scan(data: bytes) -> Scan:
     return Scan(text, visible, place, segments, found, defined, problems, ends)
 
 
-_WORD_CHARACTER = re.compile(r"\w")
-
-
 def standing(name: str, text: str) -> Iterator[int]:
     """Where a name stands as a whole word."""
     at = text.find(name)
     while at >= 0:
         end = at + len(name)
-        if not _WORD_CHARACTER.match(text, end) and not (at and _WORD_CHARACTER.match(text, at - 1)):
+        after, before = text[end : end + 1], text[at - 1] if at else ""
+        if not (after.isalnum() or after == "_" or before.isalnum() or before == "_"):
             yield at
         at = text.find(name, end)
 
@@ -390,11 +389,12 @@ def extract(data: bytes) -> CppFile:
     )
 
 
-_NAMESPACE = re.compile(r"\bnamespace\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
+# Every alternative starts with its keyword, so that the search skips plain code; what stands before is looked at after.
+_NAMESPACE = re.compile(r"namespace(?<!\wnamespace)\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
 _TYPE = re.compile(
-    r"\b(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}"
-    r"(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
-    r"|\busing\s{1,20}([^\W\d]\w*)\s{0,20}=|\btypedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
+    r"(?:struct(?<!\wstruct)|class(?<!\wclass)|union(?<!\wunion)|enum(?<!\wenum)(?:\s+class|\s+struct)?)\s{1,20}"
+    r"(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
+    r"|using(?<!\wusing)\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef(?<!\wtypedef)\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
 )
 _MOST_TYPES = 400
 
@@ -427,6 +427,8 @@ def includes_of(scanned: Scan) -> tuple[Include, ...]:
 def exports_of(visible: str) -> tuple[str, ...]:
     """Classes registered as plugins or components: the first argument, or the later one of ROS 1's old macros."""
     exports: dict[str, None] = {}
+    if not any(word in visible for word in EXPORTING):
+        return ()
     for match in _EXPORT.finditer(visible):
         line_start = visible.rfind("\n", 0, match.start()) + 1
         if visible[line_start : match.start()].lstrip().startswith("#"):
@@ -441,11 +443,11 @@ def exports_of(visible: str) -> tuple[str, ...]:
 
 def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
     references: list[Reference] = []
-    for match in _PACKAGE_URL.finditer(text):
+    for match in _PACKAGE_URL.finditer(text) if '"package://' in text else ():
         if visible[match.start()] == '"':
             kind = "file" if match.group(2) else "package"
             references.append(Reference(kind, match.group(1), match.group(2) or "", *place(match.start(1))))
-    for match in _PACKAGE_CALL.finditer(visible):
+    for match in _PACKAGE_CALL.finditer(visible) if "::getPath" in visible or "get_package_" in visible else ():
         literal = _PACKAGE_LITERAL.match(text, match.start(1))
         if literal:
             references.append(Reference("package", literal.group(1), "", *place(literal.start(1))))

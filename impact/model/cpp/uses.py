@@ -7,19 +7,26 @@ from collections.abc import Collection, Iterable, Iterator
 
 from ...facts.cpp.schema import Class, Expr, Parameter, Place
 from ...facts.cpp.schema import Use as Written
+from ...facts.usage import template_arguments
 from ..api import ASSIGNING, CALLED, CLASSES, Found, Name
 from ..members import Found as FoundMember
 from .resolver import Known, Resolver, Type
 
 _LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
 _SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
-_CALLED = re.compile(r"\s*[<({]")
-# What an argument may show itself to be of.
-_SHOWN = re.compile(r"[\"\[{]|\b(?:true|false|this|NULL|nullptr|new|bind|\d[\w.]*|\w*[qQ]o[sS]\w*)\b")
-_BRACKETS = re.compile(r"[()\[\]{},<>\"'/]|\.\.\.")
-_MOST_NEAR = 600
+# What the text of arguments has where one of them shows itself to be something that can be refused.
+_SHOWN = {
+    shown: re.compile(pattern)
+    for shown, pattern in (
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("qos", r"QoS"), ("profile", r"qos"),
+    )
+}  # fmt: skip
+_SPACE = re.compile(r"\s*")
+_MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
+_LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
+_FARTHEST = 4000
 _INTERFACES = ("::msg", "::srv", "::action")
-_CONSTRUCTED = re.compile(r"\s*(?:[<({]|>\s*\(|[A-Za-z_]\w*\s*[({])")
+_CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
 _TYPES = CLASSES | {"alias", "enum"}
 
 
@@ -72,24 +79,15 @@ class ApiUses:
         if known is not None and (known.there or (known.what in CALLED and _may_differ(known, text, end))):
             return True
         if f"{full}::{word}" in vocabulary.constructors(word):
-            constructed = _CONSTRUCTED.match(text, end)
-            return constructed is not None and _may_differ(
-                vocabulary.names[f"{full}::{word}"], text, constructed.end() - 1
-            )
+            return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
         if known is not None or scope.endswith(_INTERFACES):
             return False
-        return scope in vocabulary.classes or not vocabulary.has_space(head)
+        return (scope in vocabulary.classes or not vocabulary.has_space(head)) and self._may_be_any(word, text, end)
 
     def _may_be_any(self, word: str, text: str, end: int) -> bool:
         """Whether any of the names that end so may be used in a way that differs between versions."""
-        names = self.vocabulary.names
-        for name in self.vocabulary.by_last(word):
-            known = names[name]
-            if known.there or (known.what in CALLED and _may_differ(known, text, end)):
-                return True
-            if known.what == "constructor" and _CONSTRUCTED.match(text, end) is not None:
-                return True
-        return False
+        names = (self.vocabulary.names[name] for name in self.vocabulary.by_last(word))
+        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in names)
 
     def _differs(self, found: Found) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
@@ -275,13 +273,8 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
-        if not code.may_derive:
-            return
-        virtual = {
-            word for word in words
-            if any(names[name].virtual for name in self.vocabulary.by_last(word)) and code.may_declare(word)
-        }  # fmt: skip
-        for class_ in code.file.classes if virtual else ():
+        virtual = {word for word in words & self.vocabulary.virtual if code.may_declare(word)}
+        for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
@@ -330,39 +323,64 @@ class ApiUses:
 
 def _may_differ(known: Name, text: str, at: int) -> bool:
     """Whether what follows a name may call it in a way that not all versions take."""
-    opened = _CALLED.match(text, at)
-    if opened is None:
-        return False
-    found = _count_near(text, opened.end() - 1)
+    opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
+    templated = text.startswith("<", opened)
+    if templated:
+        types = template_arguments(text, opened + 1)
+        if types is None:
+            return True
+        opened = types.end()
+    if known.what == "constructor":
+        constructed = _CONSTRUCTED.match(text, opened)
+        if constructed is None:
+            return False
+        opened = constructed.end() - 1
+    else:
+        opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
+        if not text.startswith("(", opened):
+            return False
+    found = _arguments_near(text, opened)
     if found is None:
         return True
     count, given = found
-    return (known.typed and _SHOWN.search(given) is not None) or known.differs("call", count, ())
+    shown = [one for one in known.refuses if _SHOWN[one].search(given)]
+    return known.differs("call", count, shown, templated)
 
 
-def _count_near(text: str, at: int) -> tuple[int, str] | None:
-    """How many arguments a bracket gives that opens at an offset, and their text; None where that takes a parser."""
-    if text[at] != "(":
-        return None
-    depth, commas, quoted = 0, 0, ""
-    for match in _BRACKETS.finditer(text, at, at + _MOST_NEAR):
-        sign, place = match.group(), match.start()
-        if quoted:
-            if sign == quoted and text[place - 1] != "\\":
-                quoted = ""
-        elif sign in "\"'":
-            quoted = sign
-        elif sign in "([{":
+def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
+    """How many arguments a bracket gives that opens at an offset (-1 where it opens something else), and their text;
+    None where that takes a parser."""
+    depth, commas, place = 1, 0, at + 1
+    while (mark := _MARKS.search(text, place, at + _FARTHEST)) is not None:
+        sign, place = mark.group(), mark.end()
+        if sign in "([{":
             depth += 1
         elif sign in ")]}":
             depth -= 1
             if depth == 0:
-                given = text[at + 1 : place]
+                given = text[at + 1 : place - 1]
                 return (commas + 1 if given.strip() else 0), given
         elif sign == "," and depth == 1:
             commas += 1
-        elif sign == "<" or (sign == ">" and text[place - 1] != "-") or sign in ("/", "..."):
-            return None  # template arguments, a comparison or a comment
+        elif sign == ";" and depth == 1:
+            return -1, ""  # the body of a class
+        elif sign == "<" and depth == 1:
+            types = template_arguments(text, place)
+            if types is not None and "," in types.group():
+                return None
+        elif sign == "..." and depth == 1:
+            return None
+        elif sign == "//":
+            place = text.find("\n", place)
+        elif sign == "/*":
+            place = text.find("*/", place)
+        elif sign in _LITERALS and not (sign == "'" and text[mark.start() - 1].isalnum()):
+            literal = _LITERALS[sign].match(text, mark.start())
+            if literal is None or text[mark.start() - 1] == "R":
+                return None
+            place = literal.end()
+        if place < 0:
+            return None
     return None
 
 

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import ELEMENT, KINDS, FieldUse
 from ...targets.surface.fields import Fields
 from ..members import Found, Interface, Scope, Type, interfaces_imported, section_of
 
+if TYPE_CHECKING:
+    from ...targets.asked_versions import AskedVersions
 
-def may_use_interfaces(file: PythonFile, table: Fields) -> bool:
-    """Whether a file may use members that some version of their interface lacks, by its imports and words."""
+
+def may_use_interfaces(
+    file: PythonFile, table: Fields, asked: AskedVersions | None = None, home: Collection[str] = frozenset()
+) -> bool:
+    """Whether a file may use members that some version of their interface lacks, by its imports and words. asked, home:
+    as in Scope."""
     modules = [(one.module, one.names) for one in file.imports if not one.level]
     if any(KINDS & {module.partition(".")[2], *names} and not (module.partition(".")[2] in KINDS and names)
            for module, names in modules):  # fmt: skip
         return True  # `import pkg.msg`, `from pkg import msg`
-    return not Scope(interfaces_imported(modules, table), table).changing.isdisjoint(file.words.split(" "))
+    return not Scope(interfaces_imported(modules, table), table, asked, home).changing.isdisjoint(file.words.split(" "))
 
 
 def interfaces_used(uses: Iterable[FieldUse], table: Fields) -> list[Interface]:

@@ -81,6 +81,8 @@ class History:
             sections = []
             self._lines[name] = _spans(spans, len(self.starts)), sections
         self._definitions: dict[str, Definition] = {}
+        self._states: dict[str, int | None] = {}
+        self._lacking: dict[tuple[str, tuple[str, ...]], frozenset[str]] = {}
 
     def state(self, version: str) -> int | None:
         """The state that holds for a version; None before the first that was read."""
@@ -130,6 +132,28 @@ class History:
                         )  # fmt: skip
             known = self._definitions[interface] = Definition(spans, sections)
         return known
+
+    def lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
+        """The members of an interface that one of these versions lacks in some section while it has the interface."""
+        key = interface, versions
+        found = self._lacking.get(key)
+        if found is None:
+            definition = self.definition(interface)
+            states = {state for version in versions if (state := self._state_of(version)) is not None}
+            found = self._lacking[key] = frozenset(
+                name
+                for state in states
+                if definition is not None and there(definition.spans, state)
+                for members in definition.sections.values()
+                for name, rows in members.items()
+                if not any(there(row.spans, state) for row in rows)
+            )
+        return found
+
+    def _state_of(self, version: str) -> int | None:
+        if version not in self._states:
+            self._states[version] = self.state(version)
+        return self._states[version]
 
     @cached_property
     def by_header(self) -> dict[str, str]:

@@ -3,7 +3,7 @@ changed or on their way out. Asked of the shipped surfaces; packages of which no
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -167,19 +167,11 @@ class Offer:
 
     def _offered(self, side: str, name: str, events: tuple[Event, ...]) -> Offered:
         versions = self.line.versions
-        past = [event for event in events if event.place <= self.place]
-        future = [event for event in events if event.place > self.place]
-        there = there_at(side, events, self.place)
-        here = past[-1].has if past else future[0].had
+        standing = standing_at(side, events, self.place)
+        past, future, there = standing.past, standing.future, standing.there
         told = (past[-1] if past else future[0]).told
         deciding = past[-1:] if past else future[:1]
-        if there:
-            warns = (
-                here.deprecated is not None if here is not None else any(t.kind == "deprecated" for t in told if past)
-            )
-            state = "deprecated" if warns else "changed"
-        else:
-            state = "removed" if past else "absent"
+        state = "deprecated" if standing.deprecated else "changed" if there else "removed" if past else "absent"
         sure = all(t.sure >= 1 for event in deciding for t in event.told)
         if not self.exact and future and future[0].place == self.place + 1:
             # Which of the versions between the two stored ones made the next change is not known.
@@ -197,11 +189,11 @@ class Offer:
             told[0].what,
             "moved" if moved_to else state,
             self.version,
-            here if there else None,
-            past[-1].had if past else None,
+            standing.here,
+            standing.before,
             versions[past[-1].place - 1] if past else "",
             first,
-            coming.has if coming is not None else None,
+            standing.after,
             versions[coming.place] if coming is not None else "",
             next((versions[e.place] for e in future if there and effect(side, e) == "gone"), ""),
             told,
@@ -245,10 +237,36 @@ def _names(history: History, version: str) -> Names | None:
     return Names(python) if python is not None else None
 
 
-def there_at(side: str, events: tuple[Event, ...], place: int) -> bool:
+def there_at(side: str, events: Sequence[Event], place: int) -> bool:
     """Whether a name of which these are all events is there in the version at a place of its line."""
+    return standing_at(side, events, place).there
+
+
+class Standing(NamedTuple):
+    """How one version stands to the changes of a name. there: it has the name; deprecated: and warns of it. here,
+    before, after: the form of the name in it, before the last change up to it, and after the next one; None where the
+    name is not there, or forms say nothing. past, future: the changes up to it, and later ones."""
+
+    there: bool
+    deprecated: bool
+    here: Form | None
+    before: Form | None
+    after: Form | None
+    past: Sequence[Event]
+    future: Sequence[Event]
+
+
+def standing_at(side: str, events: Sequence[Event], place: int) -> Standing:
+    """How the version at a place of its line stands to all events of a name."""
     past = [event for event in events if event.place <= place]
-    return effect(side, past[-1]) != "gone" if past else effect(side, events[0]) != "come"
+    future = [event for event in events if event.place > place]
+    before = past[-1].had if past else None
+    if (effect(side, past[-1]) == "gone") if past else (effect(side, future[0]) == "come"):
+        return Standing(False, False, None, before, None, past, future)
+    here = past[-1].has if past else future[0].had
+    told = past[-1].told if past else ()
+    deprecated = here.deprecated is not None if here is not None else any(one.kind == "deprecated" for one in told)
+    return Standing(True, deprecated, here, before, future[0].has if future else None, past, future)
 
 
 def effect(side: str, event: Event) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from ...facts.surface import Entity
 from ...facts.usage import arguments_at
@@ -13,6 +15,9 @@ from ..symbol import Availability, State, Symbol
 from ..version import at_least
 from .changes import Form, Overload
 from .offers import Offer, Offered, Offers, declarations
+
+if TYPE_CHECKING:
+    from .store import History
 
 
 def _found(state: State, offered: Offered, form: str = "", earlier: bool = True, sure: bool = True) -> Availability:
@@ -152,19 +157,19 @@ def _is_alias(offers: Offers, package: str, name: str) -> bool:
 
 
 def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
-    here = _callable(offered.here)
+    here = callable_forms(offered.here)
     if not here:
         return None
     if offered.what == "constructor" and arguments < 2:
         return None  # what the compiler makes by itself is not told
     if not any(one.accepts(arguments) for one in here):
         for form, earlier in ((offered.before, True), (offered.after, False)):
-            if any(one.accepts(arguments) for one in _callable(form)):
+            if any(one.accepts(arguments) for one in callable_forms(form)):
                 return _found("changed", offered, "arguments", earlier)
         return None
     if any(given) and not any(_takes(one, given) for one in here if one.accepts(arguments)):
         for form, earlier in ((offered.before, True), (offered.after, False)):
-            if any(one.accepts(arguments) and _takes(one, given) for one in _callable(form)):
+            if any(one.accepts(arguments) and _takes(one, given) for one in callable_forms(form)):
                 return _found("changed", offered, "types", earlier)
         return None
     if offered.first and all(told.kind == "default" for told in offered.told):
@@ -174,7 +179,8 @@ def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Availabil
     return None
 
 
-def _callable(form: Form | None) -> list[Overload]:
+def callable_forms(form: Form | None) -> list[Overload]:
+    """The overloads of a form that may be called."""
     return [one for one in form.overloads if "deleted" not in one.traits] if form is not None else []
 
 
@@ -185,6 +191,16 @@ def _takes(overload: Overload, given: Iterable[str]) -> bool:
 
 # What takes a raw pointer only where it is asked to.
 _OWNING = re.compile(r"(?:const )?(?:(?:std|boost)::(?:shared|unique)_ptr<|[\w:]+::(?:Const)?(?:Shared|Unique)Ptr\b)")
+
+
+REFUSED = frozenset(("profile", "qos", "this", "new", "text"))
+"""What an argument may show itself to be that some parameters do not take."""
+
+
+@lru_cache(maxsize=4096)
+def refused_by(type_: str) -> frozenset[str]:
+    """What an argument must not show itself to be for a parameter of a type."""
+    return frozenset(shown for shown in REFUSED if _clash(shown, type_))
 
 
 def _clash(shown: str, type_: str) -> bool:
@@ -205,10 +221,16 @@ def defaults_changed(offers: Offers, found: Availability, arguments: int) -> tup
     """The default of the first argument left out that was another before, then and now; None where they mean the same,
     or it cannot be told. Reads both versions."""
     assert found.evidence is not None
-    name, history = found.symbol.name, offers.history(found.package)
+    history, evidence = offers.history(found.package), found.evidence
+    return default_changed(history, found.symbol.name, evidence.last, evidence.first, arguments)
+
+
+def default_changed(
+    history: History | None, name: str, last: str, first: str, arguments: int
+) -> tuple[str, str] | None:
+    """The same of a name between two stored versions of its package."""
     old, new = (
-        [_defaults(one, name) for one in declarations(history, "c++", name, version)]
-        for version in (found.evidence.last, found.evidence.first)
+        [_defaults(one, name) for one in declarations(history, "c++", name, version)] for version in (last, first)
     )
     if len(old) != 1 or len(new) != 1:
         return None
@@ -237,31 +259,33 @@ def _meaning(default: str) -> str:
 
 
 def _untold(offers: Offers, offered: Offered, arguments: int) -> Availability | None:
+    """Whether a call of what an earlier version took does not tell the template arguments any more."""
+    offer, history = offers.package(offered.package), offers.history(offered.package)
+    if not offered.first or offer is None or history is None:
+        return None
+    place = offer.line.place(offered.last)
+    before = offer.line.versions[place] if place is not None else ""
+    untold = is_untold(history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
+    return _found("changed", offered, "template") if untold else None
+
+
+def is_untold(
+    history: History, name: str, here: Form | None, before: Form | None, version: str, last: str, arguments: int
+) -> bool:
     """Whether every overload that takes so many arguments has a template parameter that none of them tells, where an
-    earlier version had one without."""
-    if not offered.first or offered.before is None or offered.here is None:
-        return None
-    lost = set(_callable(offered.before)) - set(_callable(offered.here))
-    if not any(one.accepts(arguments) for one in lost):
-        return None
-    here = _accepting(offers, offered.package, offered.name, offered.version, arguments)
-    before = _accepting(offers, offered.package, offered.name, offered.last, arguments)
-    if not here or any(_is_told(one, arguments) for one in here):
-        return None
-    if not any(_is_told(one, arguments) for one in before):
-        return None
-    return _found("changed", offered, "template")
+    earlier version had one without. here, before: the forms in the stored versions `version` and `last`."""
+    if here is None or not any(one.accepts(arguments) for one in lost_forms(before, here)):
+        return False
+    now = _accepting(history, name, version, arguments)
+    if not now or any(_is_told(one, arguments) for one in now):
+        return False
+    return any(_is_told(one, arguments) for one in _accepting(history, name, last, arguments))
 
 
-def _accepting(offers: Offers, package: str, name: str, version: str, arguments: int) -> list[Entity]:
-    """The overloads of a function in a version that take so many arguments."""
-    history = offers.history(package)
-    offer = offers.package(package)
-    place = offer.line.place(version) if offer is not None else None
-    if history is None or offer is None or place is None:
-        return []
+def _accepting(history: History, name: str, version: str, arguments: int) -> list[Entity]:
+    """The overloads of a function in a stored version that take so many arguments."""
     found = []
-    for one in history.entities(name, offer.line.versions[place]):
+    for one in history.entities(name, version):
         parameters = one.parameters or ()
         most = len(parameters) if "variadic" not in one.traits and not any(p.pack for p in parameters) else arguments
         if sum(p.default is None and not p.pack for p in parameters) <= arguments <= most and one.access != "private":
@@ -286,12 +310,12 @@ def _override(offered: Offered, given: tuple[str, ...]) -> Availability | None:
     """Whether a method that a class declares overrides none of its base's any more, or not yet."""
     const = "const" in given
     types = tuple(one for one in given if one not in ("const", "override"))
-    here = _virtual(offered.here)
+    here = virtual_forms(offered.here)
     if not all(_surely_differs(one, types, const) for one in here):
         return None
     for form, earlier in ((offered.before, True), (offered.after, False)):
         # A method that is not to override anything need not do so yet.
-        if any(_same(one, types, const) for one in _virtual(form)) and (earlier or "override" in given):
+        if any(_same(one, types, const) for one in virtual_forms(form)) and (earlier or "override" in given):
             return _found("changed", offered, "override", earlier)
     return None
 
@@ -319,7 +343,7 @@ def _unlike(one: str, other: str) -> bool:
 
 def _unmade(offered: Offered) -> Availability | None:
     """Whether a method that a class does not implement is pure in its base, and was not or will not be."""
-    here = _virtual(offered.here)
+    here = virtual_forms(offered.here)
     if not here or not all("pure" in one.traits for one in here):
         return None
     for form, earlier in ((offered.before, True), (offered.after, False)):
@@ -329,7 +353,13 @@ def _unmade(offered: Offered) -> Availability | None:
     return None
 
 
-def _virtual(form: Form | None) -> list[Overload]:
+def lost_forms(before: Form | None, here: Form | None) -> set[Overload]:
+    """The overloads of a form that may be called, and that a later one has not."""
+    return set(callable_forms(before)).difference(callable_forms(here))
+
+
+def virtual_forms(form: Form | None) -> list[Overload]:
+    """The overloads of a form that may be overridden."""
     return [one for one in form.overloads if "virtual" in one.traits] if form is not None else []
 
 
