@@ -305,7 +305,7 @@ class Availabilities:
         """What a reviewed row says stands for a field; rows call it `Name.field` or `Name_Part.field`."""
         section = "" if parts[:-1] in ([], ["message"]) else f"_{parts[0].capitalize()}"
         name = f"{interface.rpartition('/')[2]}{section}.{parts[-1]}"
-        for change in self._rows.get(("msg-field", f"{package}/{name}"), ()):
+        for change in self.target.changes().by_name.get(("msg-field", f"{package}/{name}"), ()):
             if change.new and change.state == "removed" and change.package == package:
                 return change.new.rpartition(".")[2]
         return ""
