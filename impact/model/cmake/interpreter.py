@@ -10,6 +10,8 @@ import itertools
 import posixpath
 import re
 from collections.abc import Callable, Iterable
+from functools import wraps
+from typing import Any
 
 from msgspec import structs
 
@@ -1030,8 +1032,11 @@ class Interpreter:
         elif not self.silent:
             self.found[structs.replace(found, via=self.via) if self.via else found] = None
 
-    def add_install(self, install: Install) -> None:
-        """Collects an install rule."""
+    def add_install(self, kind: str, items: Iterable[str], destination: str, of: Word | Call, **more: Any) -> None:
+        """Collects an install rule. of: what names it, whose place and conditions it has. more: fields of Install."""
+        conditions = self.under(of) if isinstance(of, Word) else self.conditions
+        fields = {"at": self.place(of.at), "conditions": conditions, **more}
+        install = Install(kind, tuple(items), destination, **fields)
         if not self.silent and install.items:
             self.installs[install] = None
 
@@ -1094,16 +1099,23 @@ WRAPPERS: dict[str, Handler] = {}
 
 
 def _registering(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
-    def register(*names: str) -> Callable[[Handler], Handler]:
+    """A decorator that puts functions into a table."""
+
+    def register(*names: str, least: int = 0) -> Callable[[Handler], Handler]:
         def keep(handler: Handler) -> Handler:
-            table.update(dict.fromkeys(names, handler))
-            return handler
+            @wraps(handler)
+            def handle(run: Interpreter, call: Call, args: list[Word]) -> None:
+                if len(args) >= least:
+                    handler(run, call, args)
+
+            table.update(dict.fromkeys(names, handle if least else handler))
+            return handle
 
         return keep
 
     return register
 
 
-# Registers the decorated function as the meaning of these commands; the second, of one that is used only when the tree
-# itself does not define the command.
+# Registers the decorated function as the meaning of these commands, where they have at least so many arguments; the
+# second, as one that is used only when the tree itself does not define the command.
 handles, stands_in_for = _registering(HANDLERS), _registering(WRAPPERS)

@@ -45,11 +45,9 @@ def _raw(text: str) -> list[str]:
     return split_list(text) if "\\;" not in text else re.split(r"(?<!\\);", text)
 
 
-@handles("list")
+@handles("list", least=2)
 def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
     """list()."""
-    if len(args) < 2:
-        return
     action, name, rest = str(args[0]).upper(), str(args[1]), args[2:]
     held = run.get(name)
     if held is not None:
@@ -218,11 +216,9 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
     run.assign(run.scope, output, Value(tuple(made), known))
 
 
-@handles("string")
+@handles("string", least=2)
 def string(run: Interpreter, call: Call, args: list[Word]) -> None:
     """string()."""
-    if len(args) < 2:
-        return
     action, rest = str(args[0]).upper(), args[1:]
     sure = all(item.sure for item in rest)
     at = call.at
@@ -346,11 +342,9 @@ _MATH = re.compile(r"(?:\s|0[xX][0-9a-fA-F]{1,15}|\d{1,18}\b|<<|>>|[-+*/%|&^~()]
 _LEADING_ZEROS = re.compile(r"\b0+(?=\d)")
 
 
-@handles("math")
+@handles("math", least=3)
 def math(run: Interpreter, call: Call, args: list[Word]) -> None:
     """math(EXPR)."""
-    if len(args) < 3:
-        return
     value = calculate(args[2]) if args[2].sure else None
     if value is None:
         run.set_unknown(args[1], call.at)
