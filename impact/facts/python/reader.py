@@ -293,7 +293,7 @@ class Reader(Objects, Text):
     def visit_For(self, node) -> None:
         """A `for` or `while`, in which nothing is known that it binds itself."""
         first = len(self.ways)
-        self.repeat(node)
+        self.forget_rebound(node)
         if node.__class__ is ast.While:
             self.visit(node.test)
         else:
@@ -474,7 +474,7 @@ class Reader(Objects, Text):
         self.scope = Scope(self.scope, False)
         self.function = True
         self.parameters(arguments)
-        self.handed(node)
+        self.note_parameters(node)
         self.scope.objects.update(types)
         self.block(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
@@ -710,7 +710,7 @@ class Reader(Objects, Text):
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
         if function in CALLING_BACK and self.has_interfaces:
-            self.call_back(node, function)
+            self.note_callback(node, function)
         self.use_call(node)
         if node.func.__class__ is ast.Attribute:
             self.visit_Attribute(node.func, node)  # type: ignore[arg-type]

@@ -822,8 +822,11 @@ class Interpreter:
             kept = kept[:MAX_WORDS]
         self.assign(self.scope, name, Value(kept, sure and all(item.sure for item in kept)))
 
-    def set_text(self, name: str, text: str, at: At, sure: bool = True) -> None:
-        """Sets a normal variable to a single text."""
+    def set_text(self, name: str, text: str | None, at: At, sure: bool = True) -> None:
+        """Sets a normal variable to a single text, or as set_unknown() where that is None."""
+        if text is None:
+            self.set_unknown(name, at)
+            return
         self.assign(self.scope, name, Value((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
 
     def set_unknown(self, name: str, at: At) -> None:
@@ -1098,7 +1101,7 @@ HANDLERS: dict[str, Handler] = {}
 WRAPPERS: dict[str, Handler] = {}
 
 
-def _registering(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
+def _register_in(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
     """A decorator that puts functions into a table."""
 
     def register(*names: str, least: int = 0) -> Callable[[Handler], Handler]:
@@ -1118,4 +1121,4 @@ def _registering(table: dict[str, Handler]) -> Callable[..., Callable[[Handler],
 
 # Registers the decorated function as the meaning of these commands, where they have at least so many arguments; the
 # second, as one that is used only when the tree itself does not define the command.
-handles, stands_in_for = _registering(HANDLERS), _registering(WRAPPERS)
+handles, stands_in_for = _register_in(HANDLERS), _register_in(WRAPPERS)

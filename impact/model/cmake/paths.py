@@ -41,9 +41,8 @@ def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> No
         start = following(args, "BASE_DIR")
         result = run.resolve(text, str(start) if start is not None else None)
     else:
-        run.set_unknown(name, call.at)
-        return
-    run.assign(run.scope, str(name), Value((word(result, path.at, run.conditions, path.sure),), path.sure))
+        result = None
+    run.set_text(str(name), result, path.at, path.sure)
 
 
 @handles("cmake_path", least=2)
@@ -101,10 +100,7 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
     else:
         result = None
         output = str(rest[-1]) if rest else name
-    if result is None or held is None:
-        run.set_unknown(output, call.at)
-    else:
-        run.assign(run.scope, output, Value((word(result, call.at, run.conditions, held.sure),), held.sure))
+    run.set_text(output, None if held is None else result, call.at, held is not None and held.sure)
 
 
 @handles("file", least=2)
