@@ -855,12 +855,8 @@ class Interpreter:
                 words.extend(template.words)
             elif kind == REFERENCE:
                 value = self.reference(template, None)
-                if value.sure or words:
-                    words.extend([item for item in value.words if item])
-                elif len(value.chosen) == 1:
-                    words.extend([item for item in value.chosen if item])
-                else:
-                    words.extend([item for item in value.words if item])
+                alone = not value.sure and not words and len(value.chosen) == 1
+                words.extend([item for item in (value.chosen if alone else value.words) if item])
             else:
                 words.extend(self.expand_one(template, None))
             if len(words) > MAX_WORDS:
@@ -873,16 +869,10 @@ class Interpreter:
     def reference(self, template: Template, head: Call | None) -> Value:
         """The value behind a plain `${name}`."""
         name = template.name
-        value = self.overlay.get(name) if self.overlay else None
+        value = self.lookup("", name)
         if value is None:
-            value = self.scope.get(name)
-            if value is None:
-                value = self.cache.get(name)
-                if value is None and name.startswith("ARGV"):
-                    return UNSET  # beyond the last argument
-                if value is None:
-                    self.use_variable(name, template.at)
-                    return Value((word(f"${{{name}}}", template.at, (), False),), False)
+            self.use_variable(name, template.at)
+            return Value((word(f"${{{name}}}", template.at, (), False),), False)
         if not value.sure:
             value = _placed(value, f"${{{name}}}", template.at)
         return _flat(value)
@@ -1107,9 +1097,8 @@ def _register_in(table: dict[str, Handler]) -> Callable[..., Callable[[Handler],
     def register(*names: str, least: int = 0) -> Callable[[Handler], Handler]:
         def keep(handler: Handler) -> Handler:
             @wraps(handler)
-            def handle(run: Interpreter, call: Call, args: list[Word]) -> None:
-                if len(args) >= least:
-                    handler(run, call, args)
+            def handle(run: Interpreter, call: Call, args: list[Word]) -> int | None:
+                return handler(run, call, args) if len(args) >= least else None
 
             table.update(dict.fromkeys(names, handle if least else handler))
             return handle
