@@ -11,7 +11,7 @@ from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
 from .text import Text, child_fields
-from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
 
 
@@ -709,7 +709,7 @@ class Reader(Objects, Text):
                 self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
-        if function in CALLING_BACK and self.has_interfaces:
+        if function in CALLBACK_CALLS and self.has_interfaces:
             self.note_callback(node, function)
         self.use_call(node)
         if node.func.__class__ is ast.Attribute:
