@@ -9,7 +9,7 @@ from ..place import Problem
 from .parameter_files import MOST_ENTRIES, YamlNode, yaml_tree
 
 
-def launch_document(data: bytes, kind: str) -> Document:
+def read_document(data: bytes, kind: str) -> Document:
     """The elements of a launch file of the kind launch_xml or launch_yaml; none of a YAML file without a `launch:`
     list. An attribute that is a list in YAML stands once for each item. Raises RecursionError alone."""
     if kind != "launch_yaml":

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
 from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
-from .documents import launch_document
+from .documents import read_document
 from .parameter_files import DEEPEST
 
 
@@ -208,7 +208,7 @@ class _Entity:
 
 
 def _launch(data: bytes, kind: str) -> LaunchFile:
-    document = launch_document(data, kind)
+    document = read_document(data, kind)
     is_yaml = kind == "launch_yaml"
     language = "yaml" if is_yaml else "xml"
     if not document.elements or document.elements[0].name != "launch":

@@ -117,7 +117,7 @@ class Call(NamedTuple):
     def actions(self, value: Any) -> Iterator[Action]:
         return self.walker.actions(value, self.line)
 
-    def lost(self, keyword: str, value: Any, extra: tuple[Condition, ...]) -> Action:
+    def skip_argument(self, keyword: str, value: Any, extra: tuple[Condition, ...]) -> Action:
         """An argument that cannot be followed."""
         source = value.source if isinstance(value, Unknown) else self.source(keyword)
         text = other(f"{keyword.replace('_', ' ')}: {source}")
@@ -151,7 +151,7 @@ class Call(NamedTuple):
                 for pair in held.items:
                     yield from self.remaps(Items(list(pair), 0, "tuple"), conditions)
             else:
-                yield self.lost("remappings", held, conditions)
+                yield self.skip_argument("remappings", held, conditions)
 
     def parameters(self, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
         for held, conditions in self.branches(value, extra):
@@ -167,7 +167,7 @@ class Call(NamedTuple):
             elif isinstance(held, YamlContent):
                 yield self.below(held, None, conditions)
             else:
-                yield self.lost("parameters", held, conditions)
+                yield self.skip_argument("parameters", held, conditions)
 
     def below(self, value: YamlContent, name: Value | None, extra: tuple[Condition, ...]) -> Action:
         """The values of a YAML file that is loaded by the launch file, under a name if one is given."""
@@ -296,7 +296,7 @@ def _passed(call: Call, value: Any, extra: tuple[Condition, ...] = ()) -> Iterat
             for pair in held.items:
                 yield from _passed(call, Items(list(pair), 0), conditions)
         elif not isinstance(held, Items):
-            yield call.lost("launch_arguments", held, conditions)
+            yield call.skip_argument("launch_arguments", held, conditions)
         elif len(held.items) == 2 and isinstance(held.items[0], Text):
             name, given = held.items
             if isinstance(given, Guarded):

@@ -12,7 +12,7 @@ from msgspec import structs
 from ..markup import TOKEN, Attribute, Document, Element, decode, scan, well_formed
 from ..place import Problem, Reference
 from ..words import words_of
-from .documents import launch_document
+from .documents import read_document
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -219,7 +219,7 @@ NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composab
 
 
 def _launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
-    document = launch_document(data, kind)
+    document = read_document(data, kind)
     if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
         return structs.replace(_values(data), problems=document.problems)
     found = _Found(document.place)

@@ -11,7 +11,7 @@ from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
 from .text import Text, child_fields
-from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
 
 
@@ -293,7 +293,7 @@ class Reader(Objects, Text):
     def visit_For(self, node) -> None:
         """A `for` or `while`, in which nothing is known that it binds itself."""
         first = len(self.ways)
-        self.repeat(node)
+        self.forget_rebound(node)
         if node.__class__ is ast.While:
             self.visit(node.test)
         else:
@@ -474,7 +474,7 @@ class Reader(Objects, Text):
         self.scope = Scope(self.scope, False)
         self.function = True
         self.parameters(arguments)
-        self.handed(node)
+        self.note_parameters(node)
         self.scope.objects.update(types)
         self.block(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
@@ -709,8 +709,8 @@ class Reader(Objects, Text):
                 self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
-        if function in CALLING_BACK and self.has_interfaces:
-            self.call_back(node, function)
+        if function in CALLBACK_CALLS and self.has_interfaces:
+            self.note_callback(node, function)
         self.use_call(node)
         if node.func.__class__ is ast.Attribute:
             self.visit_Attribute(node.func, node)  # type: ignore[arg-type]

@@ -86,14 +86,14 @@ class _Raw(NamedTuple):
 # what is a member of such an object; whether that is a field shows at the end.
 OWN = ":"
 # A parameter of a function that may be a callback: `@name:how many:which`.
-_HANDED = "@"
+_PARAMETER = "@"
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
 ELEMENT = "[]"
 _INTERFACE = re.compile(rf"\w+\.(?:{'|'.join(sorted(KINDS))})\.[A-Z]\w*(?:\.(?:{'|'.join(sorted(SECTIONS))}))?(?![^.])")
 _MENTIONS_INTERFACES = re.compile(r"\b(?:msg|srv|action)\b")
 _ASK_FOR_MESSAGES = frozenset(("create_subscription", "Subscriber"))
-CALLING_BACK = _ASK_FOR_MESSAGES | {"create_service", "Service"}
+CALLBACK_CALLS = _ASK_FOR_MESSAGES | {"create_service", "Service"}
 _DEEPEST = 40
 _DOTTED = re.compile(r"\.*[A-Za-z_][\w.]*\Z")
 SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
@@ -185,7 +185,7 @@ class Objects(Values):
         """A variable of the scope is bound."""
         self.scope.objects[name] = type_
 
-    def repeat(self, loop: ast.AST) -> None:
+    def forget_rebound(self, loop: ast.AST) -> None:
         """A loop begins, in which a variable that it binds itself has a type only where that stays the same."""
         objects = self.scope.objects
         same: set[int] = set()
@@ -197,7 +197,7 @@ class Objects(Values):
             elif getattr(node, "id", "") in objects and isinstance(node.ctx, ast.Store) and id(node) not in same:  # type: ignore[attr-defined]
                 objects[node.id] = ""  # type: ignore[attr-defined]
 
-    def handed(self, function) -> None:
+    def note_parameters(self, function) -> None:
         """Parameters of a function that is entered, which show their types where it is a callback."""
         positional = [*function.args.posonlyargs, *function.args.args]
         # None stands for what is yet to come.
@@ -208,9 +208,9 @@ class Objects(Values):
             del positional[0]
         if self.has_interfaces and 0 < len(positional) < 3 and not any(one.annotation for one in positional):
             for place, one in enumerate(positional):
-                self.scope.objects[one.arg] = f"{_HANDED}{function.name}:{len(positional)}:{place}"
+                self.scope.objects[one.arg] = f"{_PARAMETER}{function.name}:{len(positional)}:{place}"
 
-    def call_back(self, call: ast.Call, function: str) -> None:
+    def note_callback(self, call: ast.Call, function: str) -> None:
         """A call that asks for messages or requests of one interface, and names who gets them."""
         arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
         types = [type_ for one in arguments if _INTERFACE.fullmatch(type_ := self.annotated(one))]
@@ -353,7 +353,7 @@ class Objects(Values):
         """Every use of a field or constant of an interface, in the order of the source."""
         found: dict[str, FieldUse] = {}
         for (type_, member), (line, offset) in self.raw_fields.items():
-            path = f"{self.resolved(type_)}.{member}"
+            path = f"{self.resolve(type_)}.{member}"
             known = _INTERFACE.match(path)
             if known is not None and known.end() < len(path):
                 steps = tuple(path[known.end() + 1 :].split("."))
@@ -361,11 +361,11 @@ class Objects(Values):
                 found[path] = min(use, found.get(path, use), key=lambda use: (use.line, use.column))
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.column)))
 
-    def resolved(self, type_: str) -> str:
+    def resolve(self, type_: str) -> str:
         """A type whose first part is one of another module, where it shows; empty elsewhere."""
         for _ in range(_DEEPEST):
             head, _, rest = type_[1:].partition(".")
-            if type_[:1] == _HANDED:
+            if type_[:1] == _PARAMETER:
                 name, count, place = head.split(":")
                 (types, *others) = self.called_back.get(name, ((),))
                 type_ = types[int(place)] if not others and int(count) <= len(types) else ""
@@ -380,7 +380,7 @@ class Objects(Values):
 
     def types(self, raw: _Raw) -> Iterator[tuple[str, bool]]:
         """The types of other modules that a use may be of, and whether it is the only one."""
-        type_ = self.resolved(raw.type) if "." in raw.type else raw.type
+        type_ = self.resolve(raw.type) if "." in raw.type else raw.type
         if type_[:1] != OWN:
             if type_ and (type_ == raw.type or not _standard(type_)):
                 yield type_, True
@@ -417,13 +417,13 @@ class Objects(Values):
 
 def _has_fields(type_: str) -> bool:
     """Whether members of an object may be fields of an interface."""
-    return type_[:1] == _HANDED or ("." in type_ if type_[:1] == OWN else _INTERFACE.match(type_) is not None)
+    return type_[:1] == _PARAMETER or ("." in type_ if type_[:1] == OWN else _INTERFACE.match(type_) is not None)
 
 
 def _is_field(type_: str) -> bool:
     """Whether a type is none but what a field holds, so that its members are nobody else's."""
-    if type_[0] in (OWN, _HANDED):
-        return type_[0] == _HANDED or type_.count(".") > 1
+    if type_[0] in (OWN, _PARAMETER):
+        return type_[0] == _PARAMETER or type_.count(".") > 1
     known = _INTERFACE.match(type_)
     return known is not None and known.end() < len(type_)
 

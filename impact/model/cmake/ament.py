@@ -8,7 +8,7 @@ from __future__ import annotations
 import posixpath
 
 from .blocks import Call
-from .build import Found, GeneratedInterfaces, Install
+from .build import Found, GeneratedInterfaces
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
 from .targets import add_links, add_sources, known
@@ -81,10 +81,10 @@ _ROSIDL = name_set(
 )
 
 
-@handles("rosidl_generate_interfaces")
+@handles("rosidl_generate_interfaces", least=1)
 def rosidl_generate_interfaces(run: Interpreter, call: Call, args: list[Word]) -> None:
     """rosidl_generate_interfaces(target files... DEPENDENCIES packages...)."""
-    if not args or run.silent:
+    if run.silent:
         return
     target = args[0]
     given = sections(args[1:], _ROSIDL)
@@ -141,11 +141,9 @@ def rclcpp_components_register_nodes(run: Interpreter, call: Call, args: list[Wo
             run.add_export(item, "component", item.at, run.under(item), str(args[0]))
 
 
-@handles("rclcpp_components_register_node")
+@handles("rclcpp_components_register_node", least=1)
 def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Word]) -> None:
     """rclcpp_components_register_node(target PLUGIN class EXECUTABLE name): also makes and installs an executable."""
-    if not args:
-        return
     given = sections(args[1:], name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
     programs = given.get("EXECUTABLE", [])[:1]
     for item in given.get("PLUGIN", [])[:1]:
@@ -153,50 +151,42 @@ def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Wor
         run.add_export(item, "component", item.at, run.under(item), str(args[0]), program)
     for item in programs:
         run.new_target(item, "executable", item.at)
-        run.add_install(
-            Install("targets", (str(item),), f"lib/{package_name(run)}", run.place(item.at), (), run.under(item))
-        )
+        run.add_install("targets", (str(item),), f"lib/{package_name(run)}", item)
 
 
-@handles("pluginlib_export_plugin_description_file")
+@handles("pluginlib_export_plugin_description_file", least=2)
 def pluginlib_export_plugin_description_file(run: Interpreter, call: Call, args: list[Word]) -> None:
     """pluginlib_export_plugin_description_file(base_package file): the file is installed too."""
-    if len(args) < 2:
-        return
     item = args[1]
     path = run.tree_path(item)
     run.add_export(path, "plugin_description", item.at, run.under(item), str(args[0]))
     folder = "" if item.startswith("/") else posixpath.dirname(item)
     destination = posixpath.join("share", package_name(run), folder).rstrip("/")
-    run.add_install(Install("files", (path,), destination, run.place(item.at), (), run.under(item)))
+    run.add_install("files", (path,), destination, item)
 
 
-@handles("ament_python_install_package", "_ament_cmake_python_install_package")
+@handles("ament_python_install_package", "_ament_cmake_python_install_package", least=1)
 def ament_python_install_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_python_install_package(name PACKAGE_DIR folder)."""
-    if not args:
-        return
     given = sections(
         args[1:],
         name_set("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE"),
     )
     folder = given["PACKAGE_DIR"][0] if given.get("PACKAGE_DIR") else args[0]
-    run.add_install(
-        Install("python", (run.tree_path(folder),), str(args[0]), run.place(args[0].at), (), run.under(args[0]))
-    )
+    run.add_install("python", (run.tree_path(folder),), str(args[0]), args[0])
 
 
 @handles("ament_python_install_module")
 def ament_python_install_module(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_python_install_module(file)."""
     for item in args[:1]:
-        run.add_install(Install("python", (run.tree_path(item),), "", run.place(item.at), (), run.under(item)))
+        run.add_install("python", (run.tree_path(item),), "", item)
 
 
-@handles("generate_parameter_library", "generate_parameter_module")
+@handles("generate_parameter_library", "generate_parameter_module", least=2)
 def generate_parameter_library(run: Interpreter, call: Call, args: list[Word]) -> None:
     """generate_parameter_library(target yaml [validation header])."""
-    if len(args) < 2 or run.silent:
+    if run.silent:
         return
     files = tuple(run.tree_path(item) for item in args[1:])
     run.generated.append(
@@ -242,11 +232,9 @@ def ament_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("ament_add_pytest_test", "ament_add_nose_test", "add_launch_test", "add_ros_test", "ament_add_test",
-         "ament_add_ros_isolated_pytest_test", "add_ros_isolated_launch_test")  # fmt: skip
+         "ament_add_ros_isolated_pytest_test", "add_ros_isolated_launch_test", least=1)  # fmt: skip
 def ament_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
     """Tests that run a file; add_launch_test() names its test after the file unless TARGET says otherwise."""
-    if not args:
-        return
     given = test_arguments(args[1:])
     name = args[0]
     sources = given[""][:1]
@@ -287,11 +275,9 @@ def ament_auto_find_build_dependencies(run: Interpreter, call: Call, args: list[
         run.extend(name, call.at)
 
 
-@handles("ament_auto_add_library", "ament_auto_add_executable", "ament_auto_add_gtest", "ament_auto_add_gmock")
+@handles("ament_auto_add_library", "ament_auto_add_executable", "ament_auto_add_gtest", "ament_auto_add_gmock", least=1)
 def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_auto_add_library() and kin; DIRECTORY takes all sources of a folder."""
-    if not args:
-        return
     name = args[0]
     kind = {"library": "library", "executable": "executable"}.get(call.name.rpartition("_")[2], "test")
     given = sections(
@@ -343,24 +329,21 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """
         ),
     )
-    at = run.place(call.at)
     package = package_name(run)
     path_destination = "bin" if "INSTALL_TO_PATH" in given else f"lib/{package}"
     for draft in run.automatic:
         destination = path_destination if draft.kind == "executable" else "lib"
-        run.add_install(Install("targets", (draft.name,), destination, at, (), draft.conditions))
+        run.add_install("targets", (draft.name,), destination, call, conditions=draft.conditions)
         if draft.kind in ("library", "interface"):
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
     include = run.tree_path("include/")
     if run.path_exists(run.resolve("include"), True):
         headers = f"include/{package}" if "USE_SCOPED_HEADER_INSTALL_DIR" in given else "include"
-        run.add_install(Install("directory", (include,), headers, at, (), run.conditions))
+        run.add_install("directory", (include,), headers, call)
         run.add_export(headers, "ament_export_include_directories", call.at, run.conditions)
     share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
     for item in share:
-        run.add_install(
-            Install("directory", (run.tree_path(item),), f"share/{package}", run.place(item.at), (), run.under(item))
-        )
+        run.add_install("directory", (run.tree_path(item),), f"share/{package}", item)
     for dependency in run.declared.build:
         if dependency in run.declared.exported:
             run.add_export(dependency, "ament_export_dependencies", call.at, run.conditions)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import posixpath
 
 from .blocks import Call
-from .build import At, GeneratedInterfaces, Install
+from .build import At, GeneratedInterfaces
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .targets import add_links, add_sources, note_made
@@ -129,7 +129,7 @@ def catkin_python_setup(run: Interpreter, call: Call, args: list[Word]) -> None:
     """catkin_python_setup(): what setup.py names is installed."""
     item = run.tree_path("setup.py")
     destination = f"lib/python3/dist-packages/{run.project or run.package}"
-    run.add_install(Install("python", (item,), destination, run.place(call.at), (), run.conditions))
+    run.add_install("python", (item,), destination, call)
 
 
 @handles("catkin_install_python")
@@ -138,9 +138,7 @@ def catkin_install_python(run: Interpreter, call: Call, args: list[Word]) -> Non
     given = sections(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
     destination = run.shown(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
     for item in split_words(given.get("PROGRAMS", [])):
-        run.add_install(
-            Install("programs", (run.tree_path(item),), destination, run.place(item.at), (), run.under(item))
-        )
+        run.add_install("programs", (run.tree_path(item),), destination, item)
 
 
 _TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS")
@@ -155,11 +153,10 @@ _TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARG
     "add_rostest_gmock",
     "rosbuild_add_gtest",
     "rosbuild_add_gtest_build_flags",
+    least=1,
 )
 def catkin_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
     """Tests that are executables: catkin_add_gtest(), add_rostest_gtest() and kin."""
-    if not args:
-        return
     name = args[0]
     draft = run.new_target(name, "test", name.at)
     given = sections(args[1:], _TEST_OPTIONS)
@@ -171,12 +168,11 @@ def catkin_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles(
-    "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check"
+    "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check",
+    least=1,
 )
 def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
     """Tests that are launch files or Python: a test target named after the file."""
-    if not args:
-        return
     item = args[0]
     name = f"{run.package}_{item.replace('/', '_')}"
     draft = run.new_target(word(name, item.at, item.conditions), "test", item.at)
@@ -185,11 +181,9 @@ def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
     add_links(run, draft, split_words(given.get("DEPENDENCIES", [])), "order")
 
 
-@handles("catkin_download_test_data", "catkin_download")
+@handles("catkin_download_test_data", "catkin_download", least=1)
 def catkin_download(run: Interpreter, call: Call, args: list[Word]) -> None:
     """catkin_download_test_data(): a custom target, and the file that it fetches."""
-    if not args:
-        return
     run.new_target(args[0], "custom", args[0].at)
     given = sections(args[1:], frozenset({"DESTINATION", "FILENAME", "MD5"}))
     for folder in given.get("DESTINATION", []):

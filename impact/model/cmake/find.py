@@ -29,11 +29,9 @@ _LISTS = name_set(
 )
 
 
-@handles("find_package", "find_dependency")
+@handles("find_package", "find_dependency", least=1)
 def find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """find_package() in all its signatures; each component of catkin is a package of its own."""
-    if not args:
-        return
     first = call.templates[0]
     if first.kind == REFERENCE and not run.silent:
         value = run.lookup("", first.name)
@@ -148,11 +146,9 @@ def _run_module(run: Interpreter, call: Call, name: str) -> None:
         return
 
 
-@handles("gz_find_package", "ign_find_package")
+@handles("gz_find_package", "ign_find_package", least=1)
 def gz_find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """gz_find_package() of gz-cmake: a name, VERSION, REQUIRED and COMPONENTS count."""
-    if not args:
-        return
     given = sections(args[1:], _GZ)
     version = given.get("VERSION", [])[:1]
     extra = [item for item in args[1:] if item in ("REQUIRED", "QUIET", "EXACT")]
@@ -227,11 +223,9 @@ _PKG_VARIABLES = names(
 )
 
 
-@handles("pkg_check_modules", "pkg_search_module")
+@handles("pkg_check_modules", "pkg_search_module", least=2)
 def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
     """pkg_check_modules() and pkg_search_module(), with version bounds."""
-    if len(args) < 2:
-        return
     prefix = str(args[0])
     flags = {str(item) for item in args[1:] if item in _PKG_FLAGS}
     modules = split_words(item for item in args[1:] if item not in _PKG_FLAGS)
@@ -285,11 +279,9 @@ _LOCATE_STOPS = name_set(
 )
 
 
-@handles("find_library", "find_path", "find_program", "find_file")
+@handles("find_library", "find_path", "find_program", "find_file", least=2)
 def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
     """find_library(), find_path(), find_program() and find_file(): the variable is set to what is not known."""
-    if len(args) < 2:
-        return
     variable = str(args[0])
     names: list[Word] = []
     explicit = args[1] == "NAMES"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from ...facts.condition import Condition
 from .blocks import Call
-from .build import Install
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .values import Word, following, merge, split_words
@@ -41,10 +40,10 @@ _TYPES = {
 }
 
 
-@handles("install")
+@handles("install", least=1)
 def install(run: Interpreter, call: Call, args: list[Word]) -> None:
     """install() of targets, files, programs, folders and exports. Scripts and code are not followed."""
-    if not args or run.silent:
+    if run.silent:
         return
     form = args[0]
     if form in ("TARGETS", "IMPORTED_RUNTIME_ARTIFACTS"):
@@ -56,10 +55,7 @@ def install(run: Interpreter, call: Call, args: list[Word]) -> None:
     elif form == "EXPORT" and len(args) > 1:
         destination = following(args, "DESTINATION") or ""
         space = str(following(args, "NAMESPACE") or "")
-        run.add_install(
-            Install("export", (str(args[1]),), run.shown(destination), run.place(args[1].at), (), run.under(args[1]),
-                    namespace=space)
-        )  # fmt: skip
+        run.add_install("export", (str(args[1]),), run.shown(destination), args[1], namespace=space)
 
 
 @handles("install_targets", "install_files", "install_programs")
@@ -68,9 +64,7 @@ def old_install(run: Interpreter, call: Call, args: list[Word]) -> None:
     if len(args) > 1:
         kind = call.name.partition("_")[2]
         items = [str(item) if kind == "targets" else run.tree_path(item) for item in args[1:]]
-        run.add_install(
-            Install(kind, tuple(items), run.shown(args[0].lstrip("/")), run.place(call.at), (), run.conditions)
-        )
+        run.add_install(kind, items, run.shown(args[0].lstrip("/")), call)
 
 
 def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
@@ -118,10 +112,8 @@ def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
             destination = fallback or destinations.get("LIBRARY") or destinations.get("RUNTIME", "")
         rules.setdefault((destination, run.under(name)), []).append(name)
     for (destination, conditions), members in rules.items():
-        run.add_install(
-            Install("targets", tuple(str(name) for name in members), destination, run.place(members[0].at), (),
-                    conditions, export=export, includes=tuple(includes))
-        )  # fmt: skip
+        more = {"conditions": conditions, "export": export, "includes": tuple(includes)}
+        run.add_install("targets", map(str, members), destination, members[0], **more)
 
 
 def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
@@ -138,10 +130,9 @@ def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
     for item in items:
         by_conditions.setdefault(item.conditions, []).append(item)
     for conditions, members in by_conditions.items():
-        paths = tuple(run.tree_path(item) for item in members)
-        place = run.place(members[0].at if len(members) == 1 else call.at)
-        under, rename = merge(run.conditions, conditions), run.shown(following(args, "RENAME") or "")
-        run.add_install(Install(kind, paths, destination, place, (), under, rename=rename))
+        more = {"conditions": merge(run.conditions, conditions), "rename": run.shown(following(args, "RENAME") or "")}
+        paths = map(run.tree_path, members)
+        run.add_install(kind, paths, destination, members[0] if len(members) == 1 else call, **more)
 
 
 def _destination(run: Interpreter, args: list[Word]) -> str:
@@ -166,7 +157,5 @@ def _directory(run: Interpreter, call: Call, args: list[Word]) -> None:
             patterns.append(f"~{item}" if mode == "REGEX" else str(item))
             mode = ""
     paths = tuple(run.tree_path(item) for item in split_words(items))
-    run.add_install(
-        Install("directory", paths, _destination(run, args), run.place(call.at), tuple(patterns), run.conditions,
-                only="FILES_MATCHING" in args)
-    )  # fmt: skip
+    more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args}
+    run.add_install("directory", paths, _destination(run, args), call, **more)

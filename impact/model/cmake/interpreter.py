@@ -10,6 +10,8 @@ import itertools
 import posixpath
 import re
 from collections.abc import Callable, Iterable
+from functools import wraps
+from typing import Any
 
 from msgspec import structs
 
@@ -820,8 +822,11 @@ class Interpreter:
             kept = kept[:MAX_WORDS]
         self.assign(self.scope, name, Value(kept, sure and all(item.sure for item in kept)))
 
-    def set_text(self, name: str, text: str, at: At, sure: bool = True) -> None:
-        """Sets a normal variable to a single text."""
+    def set_text(self, name: str, text: str | None, at: At, sure: bool = True) -> None:
+        """Sets a normal variable to a single text, or as set_unknown() where that is None."""
+        if text is None:
+            self.set_unknown(name, at)
+            return
         self.assign(self.scope, name, Value((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
 
     def set_unknown(self, name: str, at: At) -> None:
@@ -850,12 +855,8 @@ class Interpreter:
                 words.extend(template.words)
             elif kind == REFERENCE:
                 value = self.reference(template, None)
-                if value.sure or words:
-                    words.extend([item for item in value.words if item])
-                elif len(value.chosen) == 1:
-                    words.extend([item for item in value.chosen if item])
-                else:
-                    words.extend([item for item in value.words if item])
+                alone = not value.sure and not words and len(value.chosen) == 1
+                words.extend([item for item in (value.chosen if alone else value.words) if item])
             else:
                 words.extend(self.expand_one(template, None))
             if len(words) > MAX_WORDS:
@@ -868,16 +869,10 @@ class Interpreter:
     def reference(self, template: Template, head: Call | None) -> Value:
         """The value behind a plain `${name}`."""
         name = template.name
-        value = self.overlay.get(name) if self.overlay else None
+        value = self.lookup("", name)
         if value is None:
-            value = self.scope.get(name)
-            if value is None:
-                value = self.cache.get(name)
-                if value is None and name.startswith("ARGV"):
-                    return UNSET  # beyond the last argument
-                if value is None:
-                    self.use_variable(name, template.at)
-                    return Value((word(f"${{{name}}}", template.at, (), False),), False)
+            self.use_variable(name, template.at)
+            return Value((word(f"${{{name}}}", template.at, (), False),), False)
         if not value.sure:
             value = _placed(value, f"${{{name}}}", template.at)
         return _flat(value)
@@ -1030,8 +1025,11 @@ class Interpreter:
         elif not self.silent:
             self.found[structs.replace(found, via=self.via) if self.via else found] = None
 
-    def add_install(self, install: Install) -> None:
-        """Collects an install rule."""
+    def add_install(self, kind: str, items: Iterable[str], destination: str, of: Word | Call, **more: Any) -> None:
+        """Collects an install rule. of: what names it, whose place and conditions it has. more: fields of Install."""
+        conditions = self.under(of) if isinstance(of, Word) else self.conditions
+        fields = {"at": self.place(of.at), "conditions": conditions, **more}
+        install = Install(kind, tuple(items), destination, **fields)
         if not self.silent and install.items:
             self.installs[install] = None
 
@@ -1093,17 +1091,23 @@ HANDLERS: dict[str, Handler] = {}
 WRAPPERS: dict[str, Handler] = {}
 
 
-def _registering(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
-    def register(*names: str) -> Callable[[Handler], Handler]:
+def _register_in(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
+    """A decorator that puts functions into a table."""
+
+    def register(*names: str, least: int = 0) -> Callable[[Handler], Handler]:
         def keep(handler: Handler) -> Handler:
-            table.update(dict.fromkeys(names, handler))
-            return handler
+            @wraps(handler)
+            def handle(run: Interpreter, call: Call, args: list[Word]) -> int | None:
+                return handler(run, call, args) if len(args) >= least else None
+
+            table.update(dict.fromkeys(names, handle if least else handler))
+            return handle
 
         return keep
 
     return register
 
 
-# Registers the decorated function as the meaning of these commands; the second, of one that is used only when the tree
-# itself does not define the command.
-handles, stands_in_for = _registering(HANDLERS), _registering(WRAPPERS)
+# Registers the decorated function as the meaning of these commands, where they have at least so many arguments; the
+# second, as one that is used only when the tree itself does not define the command.
+handles, stands_in_for = _register_in(HANDLERS), _register_in(WRAPPERS)

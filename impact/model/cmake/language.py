@@ -27,11 +27,9 @@ from .values import (
 )
 
 
-@handles("set")
+@handles("set", least=1)
 def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
     """set(): normal, parent scope, cache and environment variables."""
-    if not args:
-        return
     name = str(args[0])
     values = args[1:]
     if name.startswith("ENV{"):
@@ -60,11 +58,9 @@ def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
     note_variable(run, name, run.scope[name].text, args[0])
 
 
-@handles("unset")
+@handles("unset", least=1)
 def unset(run: Interpreter, call: Call, args: list[Word]) -> None:
     """unset()."""
-    if not args:
-        return
     name = str(args[0])
     if name.startswith("ENV{"):
         return
@@ -77,21 +73,17 @@ def unset(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.assign(run.scope, name, UNSET)
 
 
-@handles("option", "cmake_dependent_option")
+@handles("option", "cmake_dependent_option", least=1)
 def option(run: Interpreter, call: Call, args: list[Word]) -> None:
     """option(): the default is remembered, but a user may choose otherwise."""
-    if not args:
-        return
     default = args[2] if len(args) > 2 else word("OFF", call.at)
     if run.scope.get(args[0]) is None:
         run.assign(run.cache, str(args[0]), unsure(Value((word(str(default), call.at),))))
 
 
-@handles("include")
+@handles("include", least=1)
 def include(run: Interpreter, call: Call, args: list[Word]) -> None:
     """include() of a file of the tree, of a module on CMAKE_MODULE_PATH, or of one of CMake's own."""
-    if not args:
-        return
     name = args[0]
     optional = "OPTIONAL" in args[1:]
     answer = following(args, "RESULT_VARIABLE")
@@ -182,10 +174,10 @@ def message(run: Interpreter, call: Call, args: list[Word]) -> int:
     return FATAL if args and args[0] == "FATAL_ERROR" else 0
 
 
-@handles("cmake_minimum_required")
+@handles("cmake_minimum_required", least=2)
 def cmake_minimum_required(run: Interpreter, call: Call, args: list[Word]) -> None:
     """cmake_minimum_required(): also sets policies."""
-    if len(args) < 2 or args[0].upper() != "VERSION":
+    if args[0].upper() != "VERSION":
         return
     lower, _, upper = args[1].partition("...")
     if not run.silent and (run.minimum is None or (run.inside(call.path) and call.path == run.minimum[1].path)):
@@ -202,11 +194,9 @@ def cmake_policy(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.minimum_policy = max(run.minimum_policy, (3, 1))
 
 
-@handles("project")
+@handles("project", least=1)
 def project(run: Interpreter, call: Call, args: list[Word]) -> None:
     """project()."""
-    if not args:
-        return
     name = args[0]
     directory = run.scope["CMAKE_CURRENT_SOURCE_DIR"]
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"]
@@ -337,12 +327,11 @@ def check(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles(
-    "get_property", "get_target_property", "get_directory_property", "get_source_file_property", "get_cmake_property"
+    "get_property", "get_target_property", "get_directory_property", "get_source_file_property", "get_cmake_property",
+    least=2,
 )
 def get_property(run: Interpreter, call: Call, args: list[Word]) -> None:
     """Properties: those set in the tree are known, all others not."""
-    if len(args) < 2:
-        return
     key = _property_key(call.name, args)
     held = run.properties.get(key)
     if held is not None:

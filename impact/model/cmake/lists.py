@@ -45,11 +45,9 @@ def _raw(text: str) -> list[str]:
     return split_list(text) if "\\;" not in text else re.split(r"(?<!\\);", text)
 
 
-@handles("list")
+@handles("list", least=2)
 def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
     """list()."""
-    if len(args) < 2:
-        return
     action, name, rest = str(args[0]).upper(), str(args[1]), args[2:]
     held = run.get(name)
     if held is not None:
@@ -82,10 +80,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         known = held.sure
     words = tuple(item for item in held.words if item or len(held.words) > 1)
     if action == "LENGTH" and rest:
-        if known:
-            run.set_text(rest[0], str(len(words)), call.at)
-        else:
-            run.set_unknown(rest[0], call.at)
+        run.set_text(rest[0], str(len(words)) if known else None, call.at)
     elif action == "GET" and len(rest) >= 2:
         chosen = [_at(words, index) for index in rest[:-1]]
         if known and all(item is not None for item in chosen):
@@ -101,10 +96,8 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
                 run.assign(run.scope, str(variable), Value((item,), known) if item is not None else UNSET)
         run.assign(run.scope, name, Value(tuple(left), known))
     elif action == "FIND" and len(rest) == 2:
-        if known:
-            run.set_text(rest[1], str(words.index(rest[0]) if rest[0] in words else -1), call.at)
-        else:
-            run.set_unknown(rest[1], call.at)
+        place = str(words.index(rest[0]) if rest[0] in words else -1)
+        run.set_text(rest[1], place if known else None, call.at)
     elif action == "JOIN" and len(rest) == 2:
         run.set_text(rest[1], _joined(str(rest[0]), words), call.at, known)
     elif action == "SUBLIST" and len(rest) == 3:
@@ -218,11 +211,9 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
     run.assign(run.scope, output, Value(tuple(made), known))
 
 
-@handles("string")
+@handles("string", least=2)
 def string(run: Interpreter, call: Call, args: list[Word]) -> None:
     """string()."""
-    if len(args) < 2:
-        return
     action, rest = str(args[0]).upper(), args[1:]
     sure = all(item.sure for item in rest)
     at = call.at
@@ -346,16 +337,12 @@ _MATH = re.compile(r"(?:\s|0[xX][0-9a-fA-F]{1,15}|\d{1,18}\b|<<|>>|[-+*/%|&^~()]
 _LEADING_ZEROS = re.compile(r"\b0+(?=\d)")
 
 
-@handles("math")
+@handles("math", least=3)
 def math(run: Interpreter, call: Call, args: list[Word]) -> None:
     """math(EXPR)."""
-    if len(args) < 3:
-        return
     value = calculate(args[2]) if args[2].sure else None
-    if value is None:
-        run.set_unknown(args[1], call.at)
-    else:
-        run.set_text(args[1], hex(value) if "HEXADECIMAL" in args[3:] else str(value), call.at)
+    shown = hex if "HEXADECIMAL" in args[3:] else str
+    run.set_text(args[1], None if value is None else shown(value), call.at)
 
 
 def calculate(text: str) -> int | None:

@@ -19,11 +19,9 @@ from .values import (
 )
 
 
-@handles("get_filename_component")
+@handles("get_filename_component", least=3)
 def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> None:
     """get_filename_component()."""
-    if len(args) < 3:
-        return
     name, path, mode = args[0], args[1], str(args[2])
     text = str(path)
     base = posixpath.basename(text.rstrip("/"))
@@ -43,16 +41,13 @@ def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> No
         start = following(args, "BASE_DIR")
         result = run.resolve(text, str(start) if start is not None else None)
     else:
-        run.set_unknown(name, call.at)
-        return
-    run.assign(run.scope, str(name), Value((word(result, path.at, run.conditions, path.sure),), path.sure))
+        result = None
+    run.set_text(str(name), result, path.at, path.sure)
 
 
-@handles("cmake_path")
+@handles("cmake_path", least=2)
 def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
     """cmake_path(), the forms that scripts use."""
-    if len(args) < 2:
-        return
     action, name, rest = str(args[0]), str(args[1]), args[2:]
     if action == "SET":
         rest = [item for item in rest if item != "NORMALIZE"]
@@ -105,17 +100,12 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
     else:
         result = None
         output = str(rest[-1]) if rest else name
-    if result is None or held is None:
-        run.set_unknown(output, call.at)
-    else:
-        run.assign(run.scope, output, Value((word(result, call.at, run.conditions, held.sure),), held.sure))
+    run.set_text(output, None if held is None else result, call.at, held is not None and held.sure)
 
 
-@handles("file")
+@handles("file", least=2)
 def file(run: Interpreter, call: Call, args: list[Word]) -> None:
     """file(): GLOB is answered from the tree, paths are computed, everything else is not known."""
-    if len(args) < 2:
-        return
     action, rest = str(args[0]).upper(), args[1:]
     if action in ("GLOB", "GLOB_RECURSE"):
         _glob(run, call, action == "GLOB_RECURSE", rest)
@@ -174,11 +164,9 @@ def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> No
     run.set(name, dict.fromkeys(hits))
 
 
-@handles("aux_source_directory")
+@handles("aux_source_directory", least=2)
 def aux_source_directory(run: Interpreter, call: Call, args: list[Word]) -> None:
     """aux_source_directory()."""
-    if len(args) < 2:
-        return
     relative = run.relative(run.resolve(args[0]))
     hits = [] if relative is None else run.glob(posixpath.join(relative, "*"), False)
     sources = [path for path in sorted(hits) if path.endswith((".c", ".C", ".cc", ".cpp", ".cxx", ".c++", ".m", ".mm"))]

@@ -26,10 +26,11 @@ _LIBRARY_FLAGS = frozenset({"EXCLUDE_FROM_ALL", "IMPORTED", "GLOBAL", "WITH_SOAB
 
 
 @handles("add_library", "cuda_add_library", "rosbuild_add_library", "python_add_library", "python3_add_library",
-         "pybind11_add_module", "pybind_add_module", "python_add_module", "ament_python_add_module")  # fmt: skip
+         "pybind11_add_module", "pybind_add_module", "python_add_module", "ament_python_add_module",
+         least=1)  # fmt: skip
 def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_library() in all its signatures, and the modules' variants of it."""
-    if not args or _is_alias(run, args):
+    if _is_alias(run, args):
         return
     name, rest = args[0], args[1:]
     kind = "module" if call.name not in ("add_library", "cuda_add_library", "rosbuild_add_library") else "library"
@@ -49,10 +50,11 @@ def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
     add_sources(run, draft, sources)
 
 
-@handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable")
+@handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable",
+         least=1)  # fmt: skip
 def add_executable(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_executable() in all its signatures."""
-    if not args or _is_alias(run, args):
+    if _is_alias(run, args):
         return
     name, rest = args[0], args[1:]
     draft = run.new_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable", name.at)
@@ -75,11 +77,9 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
                 draft.add_source(run.tree_path(part), run.under(part))
 
 
-@handles("target_sources")
+@handles("target_sources", least=1)
 def target_sources(run: Interpreter, call: Call, args: list[Word]) -> None:
     """target_sources(), FILE_SET forms included."""
-    if not args:
-        return
     draft = known(run, args[0])
     kept: list[Word] = []
     section = ""
@@ -228,11 +228,9 @@ _OF_CUSTOM_COMMANDS = name_set(
 )
 
 
-@handles("add_custom_target")
+@handles("add_custom_target", least=1)
 def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_custom_target()."""
-    if not args:
-        return
     draft = run.new_target(args[0], "custom", args[0].at)
     section = ""
     for item in args[1:]:
@@ -385,11 +383,10 @@ _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})
 
 
 @handles("qt4_wrap_cpp", "qt5_wrap_cpp", "qt6_wrap_cpp", "qt_wrap_cpp", "qt4_wrap_ui", "qt5_wrap_ui", "qt6_wrap_ui",
-         "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources")  # fmt: skip
+         "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources",
+         least=2)  # fmt: skip
 def qt_wrap(run: Interpreter, call: Call, args: list[Word]) -> None:
     """Qt's generators: the variable lists files of the build folder, named as Qt names them."""
-    if len(args) < 2:
-        return
     shape = {"cpp": "moc_{}.cpp", "ui": "ui_{}.h"}.get(call.name.rpartition("_")[2], "qrc_{}.cpp")
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
     held = run.get(args[0])

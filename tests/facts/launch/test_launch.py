@@ -158,6 +158,24 @@ def test_launch_yaml():
     assert extract(LAUNCH_YAML.encode(), "params") == facts
 
 
+@pytest.mark.parametrize(
+    ("given", "arguments"),
+    [("", ()), ("    arg:\n    - {name: x, value: 1}\n    - {name: y, value: $(var z)}\n", ("x", "y")),
+     ("    let: {name: $(var n), value: 1}\n", None)],
+)  # fmt: skip
+def test_arguments_given_to_includes_in_yaml(given, arguments):
+    text = f"launch:\n- include:\n    file: $(find-pkg-share nav)/a.launch.py\n{given}"
+    assert extract(text.encode(), "launch_yaml").references[0].arguments == arguments
+
+
+def test_yaml_that_is_only_called_like_a_launch_file():
+    text = "map: $(find-pkg-share maps)/a.yaml\nplugin: a::B\n"
+    facts = extract(text.encode(), "launch_yaml")
+    found = [(r.kind, r.package, r.name) for r in facts.references]
+    assert found == [("file", "maps", "a.yaml"), ("plugin", "", "a::B")]
+    assert facts.problems == ()
+
+
 HOSTILE_YAML = [
     "launch: [" + "[" * 5000,
     "launch:\n- a: &a [x, x]\n- b: &b [*a, *a]\n- c: &c [*b, *b]\n- d: *c\n- node: {pkg: p, exec: e}\n",

@@ -74,6 +74,8 @@ def test_places_and_laziness_of_imports():
         ("def f():\n  global a\n  import a\ndef g():\n  a.c", [("a.c",)]),
         ("import a\na.b\na.b", [("a.b",)]),
         # What the file assigns is there.
+        ("import sys\nif hasattr(sys, 'a') and \\\n  hasattr(sys, 'b'):\n  sys.c",
+         [("sys.c", "hasattr(sys, 'a') and hasattr(sys, 'b')")]),
         ("import sys\nif not hasattr(sys, 'maxint'):\n  sys.maxint = sys.maxsize\nsys.maxint",
          [("sys.maxsize", "not hasattr(sys, 'maxint')")]),
         ("import a as z\ndef f():\n  z.b.c = 1\nz.b.c\nz.b.d", [("a.b.d",)]),

@@ -31,6 +31,18 @@ def told(source: str) -> set[tuple[str, str]]:
         ("from a import C\nx = C()\nx = 3\nx.m(1)", {("a.C", "call")}),
         ("from a import C\nx = C()\nfor x in y: x.m(1)", {("a.C", "call")}),
         ("from a import C\ndef f(x):\n    x.m()\nx = C()", {("a.C", "call")}),
+        # but again once it is bound to such a thing, in a branch and in every turn of a loop
+        ("from a import C\nx = f()\nx = C()\nx.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\nif y: x = C()\nx.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\nx = None\nif y: x = C()\nx.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\nif y: x = C()\nelse: x = f()\nx.m(1)", {("a.C", "call")}),
+        ("from a import C\nx = C()\nwhile y:\n  x.m(1)\n  x = C()", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\nx = C()\nwhile y:\n  x.m(1)\n  x = f()", {("a.C", "call")}),
+        ("from a import C\ndef f(x=None):\n  x = x or 1\n  if not x: x = C()\n  x.m(1)", {("a.C", "call")}),
+        ("from a import C\ndef f(x=None):\n  if not x: x = C()\n  x.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\ntry:\n  x = C()\nexcept E:\n  x.m(1)", {("a.C", "call")}),
+        ("from a import C\nclass D:\n  def f(self):\n    self.x = C()\n    a, self.x = y\n    self.x.m()",
+         {("a.C", "call")}),
         # nor when it is imported under a condition
         ("try:\n  from a import C\nexcept ImportError:\n  C = None\nx = C()\nx.m(1)", set()),
         # annotations
