@@ -184,26 +184,20 @@ def curable(ws, monkeypatch):
     from rosimpact.impact.model.cmake.build import At
     from rosimpact.impact.rules import rule as registry
     from rosimpact.impact.rules.fix_actions import Declare
-    from rosimpact.impact.rules.rule import Hit
+    from rosimpact.impact.rules.rule import Diagnostic
+    from rosimpact.impact.rules.text import Text
 
     def lacks(view):
         for package in view:
             if "rclcpp" not in package.declared:
                 fix = (Declare(package.digest.manifest_path, "rclcpp"),)
-                yield Hit(
-                    At(package.digest.manifest_path, 1),
-                    "rclcpp",
-                    "not declared",
-                    "declare it",
-                    package.name,
-                    "error",
-                    fix,
-                )
+                yield Diagnostic(At(package.digest.manifest_path, 1), "rclcpp", package.name, fix=fix)
 
     # Content of its own: what the shipped rules said of the same files is remembered, and must not be mixed with this.
     (ws / "a/CMakeLists.txt").write_text(CMAKE.format(ERROR + "# curable\n"))
     rule = all_rules()["undeclared-package"]
-    monkeypatch.setitem(registry._RULES, "undeclared-package", rule._replace(run=lacks))
+    rule = rule._replace(run=lacks, texts={"": Text("not declared", "declare it")})
+    monkeypatch.setitem(registry._RULES, "undeclared-package", rule)
     return ws
 
 

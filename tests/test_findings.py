@@ -1,7 +1,6 @@
 """From hits to findings: merging over targets, fingerprints, comparison, selection, suppression, baseline."""
 
 import json
-import re
 import time
 
 import hypothesis
@@ -17,7 +16,6 @@ from rosimpact.impact.analysis.findings import (
     fails,
     format_baseline,
     glob_matches,
-    join_texts,
     mark_new,
     merge,
     prune_baseline,
@@ -29,12 +27,14 @@ from rosimpact.impact.analysis.findings import (
 from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule, groups
+from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, groups
+from rosimpact.impact.rules.text import Text
 from rosimpact.impact.targets.evidence import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
+TEXTS = {"": Text("{message}[[ in tf2 {version}]]")}
 RULES = {
-    name: Rule(name, family, severity, lambda: iter(()), preview=preview)
+    name: Rule(name, family, severity, lambda: iter(()), preview=preview, texts=TEXTS)
     for name, family, severity, preview in (
         ("removed-header", "api", "error", False),
         ("deprecated-name", "api", "note", True),
@@ -45,7 +45,7 @@ RULES = {
 }
 # `lost-name` was a rule, and is three now; of `lost-header` nothing is left under its own name.
 SPLIT = RULES | {
-    name: Rule(name, "api", "error", lambda: iter(()), group=group, preview=preview)
+    name: Rule(name, "api", "error", lambda: iter(()), group=group, preview=preview, texts=TEXTS)
     for name, group, preview in (
         ("lost-name", "", False),
         ("lost-macro", "lost-name", False),
@@ -56,8 +56,8 @@ SPLIT = RULES | {
 FIX = (Edit("a.xml", 0, 0, "x"),)
 
 
-def hit(message="gone", *, line=1, column=1, subject="x.h", path="a.cpp", **rest) -> Hit:
-    return Hit(At(path, line, column), subject, message, package="p", **rest)
+def hit(message="gone", *, line=1, column=1, subject="x.h", path="a.cpp", version="", **rest) -> Diagnostic:
+    return Diagnostic(At(path, line, column), subject, "p", {"message": message, "version": version}, **rest)
 
 
 def merged(*hits, line_text=lambda path, line: f"line {line}", targets=TARGETS) -> list[Finding]:
@@ -77,7 +77,7 @@ MERGED = [
     ([("", hit())], [("error", 1, TARGETS, "gone")]),
     ([("", hit()), ("jazzy", hit())], [("error", 1, TARGETS, "gone")]),
     # the versions where they differ
-    ([("jazzy", hit("gone in tf2 0.36")), ("rolling", hit("gone in tf2 0.41"))],
+    ([("jazzy", hit(version="0.36")), ("rolling", hit(version="0.41"))],
      [("error", 1, ("jazzy", "rolling"), "gone in tf2 0.36 (jazzy), 0.41 (rolling)")]),
     # another line, another subject, another severity: another finding
     ([("jazzy", hit()), ("rolling", hit(line=2))],
@@ -85,8 +85,8 @@ MERGED = [
     ([("jazzy", hit(severity="warning")), ("rolling", hit()), ("humble", hit(severity="warning"))],
      [("error", 1, ("rolling",), "gone"), ("warning", 1, ("humble", "jazzy"), "gone")]),
     # what is still to come on one is not what broke on another
-    ([("humble", hit("there, and gone in tf2 0.41", evidence=Evidence("tf2", "removed", ahead=True))),
-      ("rolling", hit("gone in tf2 0.41", evidence=Evidence("tf2", "removed")))],
+    ([("humble", hit("there, and gone", version="0.41", evidence=Evidence("tf2", "removed", ahead=True))),
+      ("rolling", hit(version="0.41", evidence=Evidence("tf2", "removed")))],
      [("error", 1, ("rolling",), "gone in tf2 0.41"), ("error", 1, ("humble",), "there, and gone in tf2 0.41")]),
     # two things said of one target in one place stay two
     ([("jazzy", hit("one")), ("jazzy", hit("two"))],
@@ -134,42 +134,9 @@ def test_findings_come_in_file_order_and_a_hit_without_place_is_kept():
     findings = merged(
         ("removed-header", "", hit(path="b.cpp")),
         ("removed-header", "", hit(line=7)),
-        ("unused-dependency", "", Hit(None, "", "nothing was read")),
+        ("unused-dependency", "", hit()._replace(at=None, subject="")),
     )
     assert [(finding.path, finding.line) for finding in findings] == [("", 0), ("a.cpp", 7), ("b.cpp", 1)]
-
-
-# (texts by target, one text)
-JOINED = [
-    ({"a": "same", "b": "same"}, "same"),
-    ({"a": "", "b": "only here"}, "only here"),
-    ({"a": "", "b": ""}, ""),
-    ({"a": "needs x 1.0, has 2.0", "b": "needs x 1.0, has 2.1"}, "needs x 1.0, has 2.0 (a), 2.1 (b)"),
-    ({"a": "x 1.0 is older than 2", "b": "x 1.1 is older than 2"}, "x 1.0 (a), 1.1 (b) is older than 2"),
-    ({"a": "gone in t 1", "b": "gone in t 2", "c": "gone in t 1"}, "gone in t 1 (a, c), 2 (b)"),
-    # a name already said is not said again
-    ({"jazzy": "not released in jazzy", "rolling": "not released in rolling"}, "not released in jazzy, rolling"),
-    # code in backticks is never cut
-    ({"a": "use `x y z` now and then", "b": "use `x y w` now and then"},
-     "use `x y z` (a), `x y w` (b) now and then"),
-    # too little in common to weave
-    ({"a": "gone", "b": "renamed to y"}, "gone (a); renamed to y (b)"),
-    ({"a": "it is gone", "b": "it was renamed to y in the release before last, " + "w" * 60},
-     "it is gone (a); it was renamed to y in the release before last, " + "w" * 60 + " (b)"),
-    ({"a": "x is gone", "b": "x is gone now"}, "x is gone (a), gone now (b)"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("texts", "expected"), JOINED)
-def test_joined(texts, expected):
-    assert join_texts(list(texts.items())) == expected
-
-
-@given(st.dictionaries(st.sampled_from(["jazzy", "rolling", "robot"]), st.text("ab` ,;1.", max_size=12), min_size=1))
-def test_joined_drops_no_word(texts):
-    result = join_texts(list(texts.items()))
-    for text in texts.values():
-        assert all(word in result for word in re.findall(r"\w+", text))
 
 
 def lines_of(text):
@@ -314,8 +281,10 @@ def test_a_rule_that_was_split_keeps_its_fingerprints():
         return found[0].fingerprint
 
     assert merged_as("lost-macro", SPLIT) == merged_as("lost-name", SPLIT)
-    assert merged_as("lost-c-header", SPLIT) == merged_as("lost-header", RULES)
-    assert merged_as("lost-c-header", SPLIT) != merged_as("lost-c-header", RULES)
+    names = ("lost-header", "lost-c-header")
+    alone = {name: Rule(name, "api", "error", lambda: iter(()), texts=TEXTS) for name in names}
+    assert merged_as("lost-c-header", SPLIT) == merged_as("lost-header", alone)
+    assert merged_as("lost-c-header", SPLIT) != merged_as("lost-c-header", alone)
 
 
 def test_groups_by_name():

@@ -15,7 +15,7 @@ from ..facts.extract import Gathered
 from ..model.view import View
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Cure, Diagnostic, Finding, Hit, Rule, all_rules
+from ..rules.rule import Cure, Diagnostic, Finding, Rule, all_rules
 from ..targets.resolve import Chosen
 from ..targets.version import compare as compare_versions
 from ..tree import Tree, WorkingTree
@@ -275,7 +275,7 @@ def run_and_merge(
     known = all_rules()
     by_name = {view.target.name: view for view in views}
 
-    def merge(diagnostics: Iterable[tuple[str, str, Diagnostic | Hit]]) -> list[Finding]:
+    def merge(diagnostics: Iterable[tuple[str, str, Diagnostic]]) -> list[Finding]:
         found = after.merge(
             diagnostics,
             targets=names,

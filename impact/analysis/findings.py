@@ -1,4 +1,4 @@
-"""Hits of rules made into findings: merged over targets, fingerprinted, selected, suppressed, compared with a base."""
+"""Diagnostics made into findings: merged over targets, fingerprinted, selected, suppressed, compared with a base."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
 from ..facts.place import Allow
-from ..rules.rule import SEVERITIES, Cure, Diagnostic, Finding, Hit, Rule
+from ..rules.rule import SEVERITIES, Cure, Diagnostic, Finding, Rule
 from ..rules.text import Value, attributed
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ _MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
 
 _RANK = {name: rank for rank, name in enumerate(SEVERITIES)}
-_TOKEN = re.compile(r"`[^`]*`|[,;:](?=\s|$)|[^\s,;:`]+(?:[,;:]+[^\s,;:`]+)*|\S")
-_LONGEST_PART = 60
 
 
 def rank(severity: str) -> int:
@@ -48,7 +46,7 @@ def _never(fix: tuple[Cure, ...], target: str) -> bool:
 
 
 def merge(
-    diagnostics: Iterable[tuple[str, str, Diagnostic | Hit]],
+    diagnostics: Iterable[tuple[str, str, Diagnostic]],
     *,
     targets: Sequence[str],
     rules: Mapping[str, Rule],
@@ -66,17 +64,16 @@ def merge(
     it is right there as well. Sorted by path, line, column, rule; fingerprinted.
     """
     order = {name: index for index, name in enumerate(targets)}
-    groups: dict[tuple, list[dict[str, Diagnostic | Hit]]] = {}
+    groups: dict[tuple, list[dict[str, Diagnostic]]] = {}
     for rule_name, target, diagnostic in diagnostics:
-        rule = rules.get(rule_name)
-        severity = rule.severity_of(diagnostic) if rule else diagnostic.severity or "warning"
+        severity = rules[rule_name].severity_of(diagnostic)
         ahead = diagnostic.evidence is not None and diagnostic.evidence.ahead
         at = diagnostic.at
         key = (rule_name, severity, getattr(at, "path", ""), getattr(at, "line", 0), diagnostic.subject, ahead)
         names = (target,) if target else tuple(targets) or ("",)
         _place(groups.setdefault(key, []), names, diagnostic)
     findings = [
-        _finding(rules.get(name), name, severity, path, line, by_target, order, holds)
+        _finding(rules[name], severity, path, line, by_target, order, holds)
         for (name, severity, path, line, _, _), facts in groups.items()
         for by_target in facts
     ]
@@ -89,7 +86,7 @@ def sort_findings(findings: Iterable[Finding]) -> list[Finding]:
     return sorted(findings, key=_sort_key)
 
 
-def _place(facts: list[dict[str, Diagnostic | Hit]], names: tuple[str, ...], diagnostic: Diagnostic | Hit) -> None:
+def _place(facts: list[dict[str, Diagnostic]], names: tuple[str, ...], diagnostic: Diagnostic) -> None:
     """Puts a diagnostic into the first fact of its group that says nothing else about these targets."""
     for by_target in facts:
         if all(name not in by_target or by_target[name].fact == diagnostic.fact for name in names):
@@ -100,12 +97,11 @@ def _place(facts: list[dict[str, Diagnostic | Hit]], names: tuple[str, ...], dia
 
 
 def _finding(
-    rule: Rule | None,
-    name: str,
+    rule: Rule,
     severity: str,
     path: str,
     line: int,
-    by_target: dict[str, Diagnostic | Hit],
+    by_target: dict[str, Diagnostic],
     order: dict[str, int],
     holds: Callable[[tuple[Cure, ...], str], bool],
 ) -> Finding:
@@ -118,7 +114,7 @@ def _finding(
     )
     message, help = _render(rule, list(zip(targets, diagnostics, strict=True)))
     return Finding(
-        rule=name,
+        rule=rule.name,
         severity=severity,
         package=first.package,
         path=path,
@@ -133,70 +129,30 @@ def _finding(
     )
 
 
-def _render(rule: Rule | None, by_target: Sequence[tuple[str, Diagnostic | Hit]]) -> tuple[str, str]:
+def _render(rule: Rule, by_target: Sequence[tuple[str, Diagnostic]]) -> tuple[str, str]:
     """Message and help of a finding. Diagnostics of one kind are rendered from their data together."""
     kinds: dict[str, list[tuple[str, Mapping[str, Value]]]] = {}
-    texts: list[tuple[str, str, str]] = []
     for target, diagnostic in by_target:
-        if isinstance(diagnostic, Hit):
-            texts.append((target, diagnostic.message, diagnostic.help))
-        else:
-            kinds.setdefault(diagnostic.kind, []).append((target, diagnostic.values))
+        kinds.setdefault(diagnostic.kind, []).append((target, diagnostic.values))
+    messages: dict[str, list[str]] = {}
+    helps: dict[str, list[str]] = {}
     for kind, data in kinds.items():
-        assert rule is not None, "a diagnostic without text is of a registered rule"
-        message, help = rule.texts[kind].render(data)
-        if not texts and len(kinds) == 1:
-            return message, help
-        texts += [(target, message, help) for target, _ in data]
-    order = [target for target, _ in by_target]
-    texts.sort(key=lambda text: order.index(text[0]))
-    return (
-        join_texts([(target, message) for target, message, _ in texts]),
-        join_texts([(target, help) for target, _, help in texts]),
-    )
+        for texts, text in zip((messages, helps), rule.texts[kind].render(data), strict=True):
+            texts.setdefault(text, []).extend(target for target, _ in data)
+    return _join(messages), _join(helps)
+
+
+def _join(texts: Mapping[str, list[str]]) -> str:
+    """One text of those of several kinds, each with its targets where they differ."""
+    told = {text: names for text, names in texts.items() if text}
+    if len(told) <= 1:
+        return next(iter(told), "")
+    return "; ".join(attributed(text, names) for text, names in told.items())
 
 
 def _sort_key(finding: Finding) -> tuple:
     return (finding.path, finding.line, finding.column, finding.rule, finding.subject, -rank(finding.severity),
             finding.message)  # fmt: skip
-
-
-def join_texts(texts: Sequence[tuple[str, str]]) -> str:
-    """One text for what is said by target, naming the targets where the words differ.
-
-    >>> joined([("jazzy", "`x.h` is gone in tf2 0.36"), ("rolling", "`x.h` is gone in tf2 0.41")])
-    '`x.h` is gone in tf2 0.36 (jazzy), 0.41 (rolling)'
-
-    Where the common part is too small to read well, the whole texts stand side by side, parted by semicolons.
-    """
-    by_text: dict[str, list[str]] = {}
-    for target, text in texts:
-        if text:
-            by_text.setdefault(text, []).append(target)
-    if len(by_text) <= 1:
-        return next(iter(by_text), "")
-    whole = "; ".join(attributed(text, names) for text, names in by_text.items())
-    spans = [[match.span() for match in _TOKEN.finditer(text)] for text in by_text]
-    words = [[text[start:end] for start, end in span] for text, span in zip(by_text, spans, strict=True)]
-    shortest = min(map(len, words))
-    head = 0
-    while head < shortest - 1 and len({row[head] for row in words}) == 1:
-        head += 1
-    tail = 0
-    while head + tail < shortest - 1 and len({row[-1 - tail] for row in words}) == 1:
-        tail += 1
-    if head + tail == 0:
-        return whole
-    first = next(iter(by_text))
-    parts: dict[str, list[str]] = {}
-    for (text, names), span in zip(by_text.items(), spans, strict=True):
-        part = text[span[head][0] : span[len(span) - 1 - tail][1]]
-        parts.setdefault(part, []).extend(names)
-    if max(map(len, parts)) > _LONGEST_PART or len(first) - len(next(iter(parts))) < len(first) // 4:
-        return whole
-    before = first[: spans[0][head][0]]
-    after = first[spans[0][len(spans[0]) - 1 - tail][1] :]
-    return before + ", ".join(attributed(part, names) for part, names in parts.items()) + after
 
 
 _LONGEST_LINE = 10_000

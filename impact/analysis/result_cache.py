@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import msgspec
 from msgspec import structs
@@ -20,9 +20,8 @@ from ..model.package import Watched
 from ..model.view import View
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Remove, Replace
-from ..rules.rule import Cure, Diagnostic, Edit, Hit
+from ..rules.rule import Cure, Diagnostic, Edit
 from ..rules.severity import Doubt
-from ..rules.text import Value
 from ..source_keys import code_stamp
 from ..targets.changes import looked_for
 from ..targets.evidence import Evidence
@@ -32,15 +31,12 @@ from ..targets.surface.store import shipped
 from ..targets.target import Change, Target
 
 # (rule, what it yields)
-Yielded = tuple[str, Diagnostic | Hit]
+Yielded = tuple[str, Diagnostic]
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
 
 
 class _Stored(msgspec.Struct, frozen=True, array_like=True):
-    """A diagnostic as stored: its rule, its place taken apart, its doubts by name, its cures as (kind, fields).
-
-    One whose rule wrote its text itself has no kind, and the text as data.
-    """
+    """A diagnostic as stored: its rule, its place taken apart, its doubts by name, its cures as (kind, fields)."""
 
     rule: str
     path: str
@@ -51,7 +47,7 @@ class _Stored(msgspec.Struct, frozen=True, array_like=True):
     severity: str
     fix: tuple[tuple[str, tuple[str | int, ...]], ...]
     evidence: Evidence | None
-    kind: str | None
+    kind: str
     data: dict[str, str | int | float | tuple[str, ...]]
     doubts: tuple[str, ...] = ()
 
@@ -160,14 +156,8 @@ def load_changes(store: Store, target: Target) -> None:
         store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
 
 
-def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
+def _packed(rule: str, diagnostic: Diagnostic) -> _Stored:
     at = diagnostic.at
-    kind: str | None = None
-    data: Mapping[str, Value]
-    if isinstance(diagnostic, Hit):
-        data, doubts = {"message": diagnostic.message, "help": diagnostic.help}, ()
-    else:
-        kind, data, doubts = diagnostic.kind, diagnostic.data, diagnostic.doubts
     return _Stored(
         rule,
         getattr(at, "path", ""),
@@ -178,18 +168,16 @@ def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
         diagnostic.severity,
         tuple((type(cure).__name__, tuple(cure)) for cure in diagnostic.fix),
         diagnostic.evidence,
-        kind,
-        dict(data),
-        tuple(doubt.name for doubt in doubts if isinstance(doubt, Doubt)),
+        diagnostic.kind,
+        dict(diagnostic.data),
+        tuple(doubt.name for doubt in diagnostic.doubts if isinstance(doubt, Doubt)),
     )
 
 
-def _unpacked(stored: _Stored) -> Diagnostic | Hit:
+def _unpacked(stored: _Stored) -> Diagnostic:
     at = At(stored.path, stored.line, stored.column)
     fix: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in stored.fix)
-    package, severity, evidence = stored.package, stored.severity, stored.evidence
-    if stored.kind is None:
-        message, help = str(stored.data["message"]), str(stored.data["help"])
-        return Hit(at, stored.subject, message, help, package, severity, fix, evidence)
     doubts = tuple(Doubt[name] for name in stored.doubts)
-    return Diagnostic(at, stored.subject, package, stored.data, stored.kind, doubts, severity, fix, evidence)
+    return Diagnostic(
+        at, stored.subject, stored.package, stored.data, stored.kind, doubts, stored.severity, fix, stored.evidence
+    )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...edges import processes
 from ...edges.console import unforeseen
-from ..rules.rule import Diagnostic, Hit, Rule, Scope
+from ..rules.rule import Diagnostic, Rule, Scope
 from ..targets.snapshot import SnapshotError
 from . import result_cache as memo
 
@@ -29,12 +29,12 @@ _PACKAGE_MEMORY = 8 << 20
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
 # (rule, what it yields)
-Yielded = tuple[str, Diagnostic | Hit]
+Yielded = tuple[str, Diagnostic]
 
 
 def run_rules(
     opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
-) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
+) -> Iterator[tuple[str, str, Diagnostic]]:
     """(rule, target, diagnostic) of all the rules; the target is empty for rules that know none.
 
     before: the workspace at the base, for rules that compare. crashed: receives the rules that failed; the results of
@@ -209,7 +209,7 @@ def _run_flow_part(
     return yielded, failed
 
 
-def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
+def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:
     """What a rule yields for the built files, machine by machine. It is not stored, since a machine can change at any
     time."""
     installed = opened.installed
@@ -224,7 +224,7 @@ def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tu
         yield from ((rule.name, shelf.target, each) for each in yielded)
 
 
-def _bind(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Diagnostic | Hit]]:
+def _bind(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Diagnostic]]:
     """The call of a rule that asks no target."""
     if not rule.has_base:
         return lambda: rule.run(opened.workspace)

@@ -93,27 +93,6 @@ class Diagnostic(NamedTuple):
         return {"subject": self.subject, "package": self.package, **self.data}
 
 
-class Hit(NamedTuple):
-    """A diagnostic whose text is written by the rule, for rules that have no templates yet. See Diagnostic.
-
-    message: one clause, code in backticks. help: what to do, or empty. severity: empty for the rule's own.
-    """
-
-    at: Any
-    subject: str
-    message: str
-    help: str = ""
-    package: str = ""
-    severity: str = ""
-    fix: tuple[Cure, ...] = ()
-    evidence: Evidence | None = None
-
-    @property
-    def fact(self) -> object:
-        """What is said of a target."""
-        return self.message
-
-
 class Finding(NamedTuple):
     """A finding as reported, see docs/findings.md."""
 
@@ -168,27 +147,26 @@ class Rule(NamedTuple):
         """Whether it rests on the message flow."""
         return self.scope in ("flow", "flow_change")
 
-    def severity_of(self, diagnostic: Diagnostic | Hit) -> str:
+    def severity_of(self, diagnostic: Diagnostic) -> str:
         """How severe a diagnostic is: as it says itself, else the usual severity, lowered by its doubts."""
-        if diagnostic.severity or isinstance(diagnostic, Hit) or not diagnostic.doubts:
+        if diagnostic.severity or not diagnostic.doubts:
             return diagnostic.severity or self.severity
         return min(self.severity, severity(*diagnostic.doubts), key=SEVERITIES.index)
 
-    def verify(self, diagnostic: Diagnostic | Hit) -> None:
+    def verify(self, diagnostic: Diagnostic) -> None:
         """Raises ValueError when the rule has no text for a diagnostic, or the text cannot be rendered from its data: a
         value is missing, or has another type than the text expects."""
-        if isinstance(diagnostic, Diagnostic):
-            text = self.texts.get(diagnostic.kind)
-            if text is None:
-                raise ValueError(f"{self.name} has no text for diagnostics of the kind `{diagnostic.kind}`")
-            lacking = text.fields - diagnostic.values.keys()
-            if lacking:
-                raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
-            try:
-                severity(*diagnostic.doubts)
-                text.render([("", diagnostic.values)])
-            except (ValueError, TypeError) as error:
-                raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None
+        text = self.texts.get(diagnostic.kind)
+        if text is None:
+            raise ValueError(f"{self.name} has no text for diagnostics of the kind `{diagnostic.kind}`")
+        lacking = text.fields - diagnostic.values.keys()
+        if lacking:
+            raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
+        try:
+            severity(*diagnostic.doubts)
+            text.render([("", diagnostic.values)])
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None
 
 
 _RULES: dict[str, Rule] = {}

@@ -4,7 +4,8 @@ import pytest
 from rosimpact.impact.analysis.findings import merge
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Edit, Hit, Rule
+from rosimpact.impact.rules.rule import Diagnostic, Edit, Rule
+from rosimpact.impact.rules.text import Text
 
 FILES = {
     "src/localizer/src/node.cpp": b"""#include <rclcpp/rclcpp.hpp>
@@ -26,7 +27,14 @@ NAMES = ("humble", "jazzy", "rolling", "robot")
 PLATFORMS = {"humble": "ubuntu jammy", "jazzy": "ubuntu noble", "rolling": "ubuntu noble", "robot": "ubuntu jammy"}
 
 RULES = {
-    name: Rule(name, family, severity, lambda: iter(()), f"{name}: {short}.\n\nWhat it does\n    {what}\n")
+    name: Rule(
+        name,
+        family,
+        severity,
+        lambda: iter(()),
+        f"{name}: {short}.\n\nWhat it does\n    {what}\n",
+        texts={"": Text("{message}[[ {version}]]", "{help}")},
+    )
     for name, family, severity, short, what in (
         ("removed-header", "api", "error", "an included header is gone on a target", "Reports `#include` lines."),
         ("undeclared-package", "packages", "error", "a package is used and not declared", "Reports uses."),
@@ -36,6 +44,11 @@ RULES = {
 }
 
 
+def said(at, subject, message, help="", package="", severity="", fix=(), version="") -> Diagnostic:
+    data = {"message": message, "help": help, "version": version}
+    return Diagnostic(at, subject, package, data, severity=severity, fix=fix)
+
+
 def team_hits():
     node, manifest = "src/localizer/src/node.cpp", "src/localizer/package.xml"
     header = "tf2_geometry_msgs/tf2_geometry_msgs.h"
@@ -43,12 +56,13 @@ def team_hits():
         yield (
             "removed-header",
             target,
-            Hit(
+            said(
                 At(node, 2, 11),
                 header,
-                f"`{header}` is gone in tf2_geometry_msgs {version}",
+                f"`{header}` is gone in tf2_geometry_msgs",
                 f"include `{header}pp`, present on every target asked for",
                 "localizer",
+                version=version,
             ),
         )
     declare = (Edit(manifest, 49, 49, "\r\n  <depend>cv_bridge</depend>"),)
@@ -56,7 +70,7 @@ def team_hits():
         yield (
             "undeclared-package",
             target,
-            Hit(
+            said(
                 At(node, 3, 11),
                 "cv_bridge",
                 "`cv_bridge` is included and not declared",
@@ -69,7 +83,7 @@ def team_hits():
     yield (
         "library-version",
         "robot",
-        Hit(
+        said(
             At("src/planner/CMakeLists.txt", 2, 14),
             "OpenCV",
             "`find_package(OpenCV 4.6)` asks for more than opencv 4.5.4",
@@ -77,7 +91,7 @@ def team_hits():
             "planner",
         ),
     )
-    yield "unused-dependency", "", Hit(At(manifest, 3, 11), "tf2", "`tf2` is declared and not used", "", "localizer")
+    yield "unused-dependency", "", said(At(manifest, 3, 11), "tf2", "`tf2` is declared and not used", "", "localizer")
 
 
 def report_of(hits, files, names=NAMES, **changes) -> Report:
@@ -126,7 +140,7 @@ def hostile() -> Report:
         (
             "removed-header",
             "",
-            Hit(At(path, 1, 4), PAYLOAD, f"{PAYLOAD}\n::error::z @team #1", f"{PAYLOAD} {{{{data}}}}", PAYLOAD),
+            said(At(path, 1, 4), PAYLOAD, f"{PAYLOAD}\n::error::z @team #1", f"{PAYLOAD} {{{{data}}}}", PAYLOAD),
         )
     ]
     return report_of(hits, files, root=PAYLOAD, base=PAYLOAD, failure="")
@@ -140,6 +154,6 @@ def large() -> Report:
     hits = []
     for index in range(5000):
         package, header = f"p{index % 200}", f"h{index}.hpp"
-        hit = Hit(At(f"src/{package}/a.cpp", index // 200 + 1, 11), header, f"`{header}` is gone", "", package)
+        hit = said(At(f"src/{package}/a.cpp", index // 200 + 1, 11), header, f"`{header}` is gone", "", package)
         hits.append((list(RULES)[index % 4], NAMES[index % 3], hit))
     return report_of(hits, files)

@@ -5,7 +5,7 @@ import re
 import pytest
 from rosimpact.impact.analysis.findings import merge
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Hit, Rule, all_rules
+from rosimpact.impact.rules.rule import Diagnostic, Rule, all_rules
 from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.text import Text, list_names, render_template
 
@@ -83,7 +83,7 @@ MERGED = [
     ([of("a", version="1"), of("b", version="2")], [("`f` was removed in 1 (a), 2 (b)", "")]),
     # another kind of fact on another target is told as well
     ([of("a", version="1"), of("b", "moved", version="2", replacement="g")],
-     [("`f` was removed in 1 (a), moved in 2 (b)", "use `g`")]),
+     [("`f` was removed in 1 (a); `f` was moved in 2 (b)", "use `g`")]),
     # two facts about one target stay two
     ([of("a", version="1"), of("a", version="2")], [("`f` was removed in 1", ""), ("`f` was removed in 2", "")]),
     # twice the same fact is one
@@ -91,9 +91,6 @@ MERGED = [
     # another severity is another finding
     ([of("a", version="1"), of("b", severity="note", version="1")],
      [("`f` was removed in 1", ""), ("`f` was removed in 1", "")]),
-    # a rule in the move may yield both
-    ([of("a", version="1"), ("lost-name", "b", Hit(At("a.cpp", 1), "f", "`f` is gone", package="p", severity="error"))],
-     [("`f` was removed in 1 (a); `f` is gone (b)", "")]),
 ]  # fmt: skip
 
 

@@ -1,7 +1,23 @@
 """What catkin is asked to find, and cannot: find modules, system libraries as components; and ROS's include folder."""
 
 from ...model.view import View
-from ..rule import Hit
+from ..rule import Diagnostic
+from ..severity import Doubt
+from ..text import Text
+
+TEXTS = {
+    "find module": Text(
+        "`Find{name}.cmake` comes with `{subject}`, which CMakeLists.txt does not find",
+        "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
+    ),
+    "include directories": Text(
+        "`{target}` includes `{header}` but does not get {subject}", "include_directories(${{catkin_INCLUDE_DIRS}})"
+    ),
+    "component": Text(
+        "`{subject}` is a system library in {distro}, not a catkin component",
+        "find_package({subject} REQUIRED), or pkg-config, on its own",
+    ),
+}
 
 # Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
 _FIND_MODULES = frozenset({"Eigen", "NUMPY", "TBB", "TinyXML", "TinyXML2", "UUID", "Xenomai", "GSL"})
@@ -18,16 +34,13 @@ def check_find_modules(view: View, package):
             continue
         if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
             continue
-        sure = found.required and view.certain(found.conditions)
         needed = found.required or (found.name == "Eigen" and _lacks_eigen(view, package))
-        yield Hit(
-            found.at,
-            "cmake_modules",
-            f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
-            "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
-            package.name,
-            severity="error" if sure else "warning" if needed else "note",
+        doubts = (
+            needed or Doubt.DISPENSABLE,
+            found.required or Doubt.OPTIONAL,
+            view.certain(found.conditions) or Doubt.CONDITIONAL,
         )
+        yield Diagnostic(found.at, "cmake_modules", package.name, {"name": found.name}, "find module", doubts)
 
 
 def _lacks_eigen(view: View, package) -> bool:
@@ -71,14 +84,10 @@ def check_include_directories(view: View, package):
             None,
         )
         if include is not None:
-            yield Hit(
-                target.at,
-                "catkin_INCLUDE_DIRS",
-                f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
-                "include_directories(${catkin_INCLUDE_DIRS})",
-                package.name,
-                severity="warning" if view.target.distro in _WITH_CPATH else "error",
-            )
+            data = {"target": target.name, "header": include.path}
+            doubts = (Doubt.LUCKY,) if view.target.distro in _WITH_CPATH else ()
+            subject = "catkin_INCLUDE_DIRS"
+            yield Diagnostic(target.at, subject, package.name, data, "include directories", doubts)
             return
 
 
@@ -103,11 +112,5 @@ def check_components(view: View, package):
         key = view.target.resolve(name) is not None
         if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
             continue
-        yield Hit(
-            found.at,
-            name,
-            f"`{name}` is a system library in {view.target.distro} and no catkin component",
-            f"find_package({name} REQUIRED), or pkg-config, on its own",
-            package.name,
-            severity="error" if found.required and not view.underlaid else "warning",
-        )
+        doubts = (found.required or Doubt.OPTIONAL, not view.underlaid or Doubt.INCOMPLETE)
+        yield Diagnostic(found.at, name, package.name, {"distro": view.target.distro}, "component", doubts)

@@ -6,7 +6,20 @@ from ...model.cmake.build import for_tests
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import View
 from ...targets.version import at_least
-from ..rule import Hit
+from ..rule import Diagnostic
+from ..severity import Doubt
+from ..text import Text
+
+TEXTS = {
+    "not given": Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
+    "client library": Text(
+        "`{target}` includes `{header}` but links nothing", "target_link_libraries({target} {item})"
+    ),
+    "own name": Text(
+        "`{target}` is given `{package}`, which is this package itself, so CMake stops",
+        "target_link_libraries({target} {package})",
+    ),
+}
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 # Distros in which headers of all packages lay in one folder, so that any found package served every target.
@@ -23,7 +36,7 @@ def check_given_packages(view: View, package):
     found = {f.name for f in package.build.found}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
-    told = set()
+    seen = set()
     reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
     for include in package.digest.includes:
         providers = view.header(include.path)
@@ -35,7 +48,7 @@ def check_given_packages(view: View, package):
         ):
             continue
         name = providers[0].name
-        if name not in found or name == package.name or name in told or name.endswith("_vendor"):
+        if name not in found or name == package.name or name in seen or name.endswith("_vendor"):
             continue
         for target in include.targets:
             if target not in reach:
@@ -48,15 +61,11 @@ def check_given_packages(view: View, package):
             brought = reach[target]
             if brought is None or name in brought[0] or any(may_hide(item, name) for item in brought[1]):
                 continue
-            told.add(name)
-            yield Hit(
-                targets[target].at,
-                name,
-                f"`{target}` includes `{include.path}` and is not given `{name}`",
-                f"give `{name}` to the target",
-                package.name,
-                severity="error" if include.role == "build" and view.certain(targets[target].conditions) else "warning",
-            )
+            seen.add(name)
+            certain = view.certain(targets[target].conditions)
+            doubts = (include.role == "build" or Doubt.TEST, certain or Doubt.CONDITIONAL)
+            data = {"target": target, "header": include.path}
+            yield Diagnostic(targets[target].at, name, package.name, data, "not given", doubts)
             break
 
 
@@ -64,7 +73,7 @@ _VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIR
 
 
 def _given(targets, name: str) -> set[str] | None:
-    """All that a target is given, itself or through targets of its package; None when that cannot be told."""
+    """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
     items: set[str] = set()
     stack, seen = [name], set()
     while stack:
@@ -106,14 +115,8 @@ def check_client_links(view: View, package):
         for name in include.targets:
             target = programs.pop(name, None)
             if target is not None:
-                yield Hit(
-                    target.at,
-                    client,
-                    f"`{name}` includes `{include.path}` and is linked to nothing",
-                    f"target_link_libraries({name} {item})",
-                    package.name,
-                    severity="error",
-                )
+                data = {"target": name, "header": include.path, "item": item}
+                yield Diagnostic(target.at, client, package.name, data, "client library")
 
 
 def check_own_name(view: View, package):
@@ -123,14 +126,8 @@ def check_own_name(view: View, package):
     for target in package.build.targets:
         for link in target.links:
             if link.how == "ament" and link.item == package.name and view.certain(target.conditions + link.conditions):
-                yield Hit(
-                    link.at,
-                    "ament_target_dependencies",
-                    f"`{target.name}` is given `{link.item}`, which is this package itself, so CMake stops",
-                    f"target_link_libraries({target.name} {link.item})",
-                    package.name,
-                    severity="error",
-                )
+                data = {"target": target.name}
+                yield Diagnostic(link.at, "ament_target_dependencies", package.name, data, "own name")
                 return
 
 

@@ -6,8 +6,18 @@ from functools import lru_cache
 from ...model.cmake.names import MODULES
 from ...model.view import View
 from ...targets.providers.library import variables
-from ..rule import Hit
-from ..severity import Doubt, severity
+from ..rule import Diagnostic
+from ..severity import Doubt
+from ..text import Text
+
+TEXTS = {
+    "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
+    "unset module": Text("`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"),
+    "prefix": Text(
+        "`{prefix}` is taken as the prefix of the variables, so `{subject}` is not {prefix}",
+        "pkg_check_modules({variable} {prefix} {subject})",
+    ),
+}
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
 # Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
@@ -25,12 +35,12 @@ def check_unset_libraries(view: View, package):
         return
     sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
     reachable = {fold(name) for name in view.spread(f.name for f in build.found)}
-    told = set()
+    seen = set()
     for use in build.uses:
         match = (
             _LIBRARIES.match(use.name) if use.kind == "variable" and use.context == "target_link_libraries" else None
         )
-        if match is None or use.name in told or not view.certain(use.conditions):
+        if match is None or use.name in seen or not view.certain(use.conditions):
             continue
         stem = match.group(1)
         folded = fold(stem)
@@ -38,19 +48,14 @@ def check_unset_libraries(view: View, package):
             continue
         if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
             continue
-        told.add(use.name)
+        seen.add(use.name)
         module = next((m for m in (stem, f"lib{stem}") if view.providers.pkgconfig(m)), "")
         known = module or (stem if view.cmake(stem) else "")
         if not known:
             continue
-        yield Hit(
-            use.at,
-            known,
-            f"`{use.name}` is linked, and nothing sets it",
-            f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
-            package.name,
-            severity=severity(*_doubts(view, package, use.name, module, stem)),
-        )
+        doubts = _doubts(view, package, use.name, module, stem)
+        data = {"variable": use.name, "stem": stem}
+        yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 
 
 def _doubts(view: View, package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
@@ -99,13 +104,8 @@ def check_prefixes(view: View, package):
     """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
     for found in package.build.found:
         if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
-            yield Hit(
-                found.at,
-                found.name,
-                f"`{found.prefix}` is taken as the prefix of the variables, so `{found.name}` is not {found.prefix}",
-                f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
-                package.name,
-            )
+            data = {"prefix": found.prefix, "variable": found.name.upper().replace("-", "_")}
+            yield Diagnostic(found.at, found.name, package.name, data, "prefix", (Doubt.DISTURBS,))
 
 
 @lru_cache(maxsize=10000)

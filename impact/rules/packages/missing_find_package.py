@@ -32,8 +32,10 @@ from ...model.cmake.build import for_tests
 from ...model.cmake.links import found_with
 from ...model.view import View, interface_of
 from ...targets.version import at_least
-from ..rule import Hit, rule
-from ..severity import Doubt, severity
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .find_catkin import TEXTS as CATKIN_TEXTS
 from .find_catkin import check_components, check_find_modules, check_include_directories
 from .find_targets import (
     ONE_FOLDER,
@@ -43,25 +45,39 @@ from .find_targets import (
     list_given_names,
     stops_at_names,
 )
+from .find_targets import TEXTS as TARGET_TEXTS
+from .find_variables import TEXTS as VARIABLE_TEXTS
 from .find_variables import check_prefixes, check_unset_libraries, fold
-from .unlinked import unlinked
+from .unlinked import TEXTS as LINK_TEXTS
+from .unlinked import list_unlinked
 
 _SYSTEM_BY_DEFAULT = (
-    "boost/",
-    "yaml-cpp/",
-    "tinyxml",
-    "SDL/",
-    "libusb",
-    "GL/",
-    "zlib",
-    "curl/",
-    "gtest/",
-    "gmock/",
-    "openssl/",
+    *("boost/", "yaml-cpp/", "tinyxml", "SDL/", "libusb", "GL/", "zlib", "curl/", "gtest/", "gmock/", "openssl/"),
 )
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        **CATKIN_TEXTS,
+        **TARGET_TEXTS,
+        **VARIABLE_TEXTS,
+        **LINK_TEXTS,
+        "given": Text(
+            "`{subject}` is given to a target but find_package(`{subject}`) is not called",
+            "add find_package({subject} REQUIRED)",
+        ),
+        "included": Text(
+            "`{header}` is included but CMakeLists.txt does not find `{subject}`",
+            "add find_package({subject} REQUIRED) and give it to the target",
+        ),
+        "placed": Text(
+            "`{header}` is included, but {vendor} {version} no longer finds `{subject}`",
+            "add find_package({subject} REQUIRED) and link it",
+        ),
+    },
+)
 def missing_find_package(view: View):
     for package in view:
         build = package.build
@@ -76,7 +92,7 @@ def missing_find_package(view: View):
         yield from check_prefixes(view, package)
         yield from check_own_name(view, package)
         yield from check_client_links(view, package)
-        yield from unlinked(view, package)
+        yield from list_unlinked(view, package)
         found = found_names(view, package)
         if found is None:
             continue
@@ -86,20 +102,13 @@ def missing_find_package(view: View):
         built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
         shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         closure = view.closure(package)
-        told = set()
-        given = severity(stops_at_names(view) or Doubt.LUCKY)
+        seen = set()
+        given = (stops_at_names(view) or Doubt.LUCKY,)
         for at, name in list_given_names(view, package):
-            if name in reachable or name in told or name in package.digest.modules or name == package.name:
+            if name in reachable or name in seen or name in package.digest.modules or name == package.name:
                 continue
-            told.add(name)
-            yield Hit(
-                at,
-                name,
-                f"`{name}` is given to a target and find_package(`{name}`) is never called",
-                f"add find_package({name} REQUIRED)",
-                package.name,
-                severity=given,
-            )
+            seen.add(name)
+            yield Diagnostic(at, name, package.name, kind="given", doubts=given)
         sought = {fold(f.name) for f in package.build.found if f.name in outside}
         linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in view.weighed(package):
@@ -109,7 +118,7 @@ def missing_find_package(view: View):
             if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
                 continue
             name = next((p.name for p in need.providers if p.name in closure), None)
-            if name is None or name in told or name == package.name:
+            if name is None or name in seen or name == package.name:
                 continue
             ros = need.providers[0].kind == "ros"
             stems = {fold(p.name) for p in need.providers} | {fold(need.subject.split("/")[0])}
@@ -120,24 +129,18 @@ def missing_find_package(view: View):
             header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
             if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
                 continue
-            told.add(name)
-            direct = name in view.declared(package)
-            yield Hit(
-                need.at,
-                name,
-                f"`{need.subject}` is included and CMake never looks for `{name}`",
-                f"add find_package({name} REQUIRED) and give it to the target",
-                package.name,
-                severity=_weight_of(view, need, direct and ros and not header_only),
-            )
+            seen.add(name)
+            counts = name in view.declared(package) and ros and not header_only
+            doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
+            yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
 
 
-def _weight_of(view: View, need, counts: bool) -> str:
+def _doubt_of_include(view: View, need) -> Doubt | None:
     """How surely a missing find_package stops the compiler: from Jazzy on every package has its include folder."""
-    if not counts or not (need.targets or need.public):
-        return "note"
+    if not (need.targets or need.public):
+        return Doubt.UNCOMPILED
     apart = view.target.ros == 2 and view.target.distro not in (*ONE_FOLDER, "humble", "iron")
-    return "error" if apart and need.targets and len(need.providers) == 1 else "warning"
+    return None if apart and need.targets and len(need.providers) == 1 else Doubt.LUCKY
 
 
 # Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
@@ -162,14 +165,8 @@ def _only_placed(view: View, package):
         others = view.spread(name for name in found if name != vendor)
         if vendor in others or library in others:
             continue  # it may come along with those
-        yield Hit(
-            asked.at,
-            library,
-            f"`{use.path}` is included, and {vendor} {version} no longer finds `{library}`",
-            f"add find_package({library} REQUIRED) and link it",
-            package.name,
-            severity="error" if asked.required else "warning",
-        )
+        data = {"header": use.path, "vendor": vendor, "version": version}
+        yield Diagnostic(asked.at, library, package.name, data, "placed", (asked.required or Doubt.OPTIONAL,))
 
 
 def _cmake_of(view: View, name: str) -> set[str]:
