@@ -1058,8 +1058,8 @@ class View:
         if (
             own
             and head not in own
-            and path not in self.workspace.rooted_headers
-            and self.target.version(head) is not None
+            and self.target.ever_released(head)
+            and (path not in (rooted := self.workspace.rooted_headers) or all(f"{o}/{path}" in rooted for o in own))
         ):
             own = []  # a file of the workspace ends like this by chance
         if own:
