@@ -40,9 +40,9 @@ def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tu
 
 
 def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
-    """Of a need that is answered by what happens to be installed along: none where the build farm does not install it,
-    as it does what is declared to run."""
-    stops = need.role == "build" and (need.how in ASKED or need.targets)
+    """Of a need that is answered by what happens to be installed along: none where the build farm, which builds the
+    package's releases, installs no such thing, as it does not what is declared to run."""
+    stops = need.role == "build" and (need.how in ASKED or need.targets) and view.target.ever_released(package.name)
     installed = view.roles.on_build_farm(package)
     if not stops or view.answered(need.providers, installed):
         return (Doubt.LUCKY,)
