@@ -42,8 +42,8 @@ ROWS = {
     "the tool for tests brings it": (
         "undeclared-package", "jazzy",
         ament(
-            "sled", "if(BUILD_TESTING)\n  find_package(benchmark REQUIRED)\nendif()",
-            "test_depend:ament_cmake_google_benchmark",
+            "sled", "if(BUILD_TESTING)\n  add_executable(run test/run.cpp)\nendif()",
+            "test_depend:ament_cmake_google_benchmark", test__run_cpp="#include <benchmark/benchmark.h>\n" + MAIN,
         ),
         set(),
     ),
