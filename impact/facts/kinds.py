@@ -71,7 +71,6 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "searched_cpp": ("searches", "SearchedCpp"),
     "searched_text": ("searches", "SearchedText"),
     "interfaces_python": ("python_interfaces", "InterfacesFile"),
-    "variables_cpp": ("searches", "VariablesCpp"),
     "declared_cpp": ("searches", "DeclaredCpp"),
 }
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""
