@@ -2,7 +2,9 @@
 
 usage: check.py WORKSPACE [--ros1 WORKSPACE] [--target jazzy] [--repeat 3]
 
-Every figure is the best of the repeats, wall time of a whole process on this machine, imports included:
+Every figure is the best of the repeats: wall time of a whole process on this machine, imports included, and in brackets
+the processor time of it and its children, which other work on the machine changes less. The memory is that of the
+largest of these processes.
     cold       no facts are known (an empty cache folder; the distro data is unpacked already)
     warm       nothing has changed since
     previews   no facts are known, and preview rules are asked too: those on the message flow need more facts of code
@@ -36,23 +38,23 @@ def sources(root: Path) -> list[Path]:
     return [p for p in sorted(root.rglob("*")) if p.name.endswith(SOURCES) and p.is_file()]
 
 
-def run(command: list[str], environment: dict[str, str]) -> tuple[float, int]:
-    """Wall seconds and peak memory in MB of one process (its children not counted)."""
+def run(command: list[str], environment: dict[str, str]) -> tuple[float, float, int]:
+    """Wall seconds of a process, processor seconds of it and its children, and the peak memory in MB of the largest."""
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     took = time.perf_counter() - start
     if os.waitstatus_to_exitcode(status) not in (0, 1):
         raise SystemExit(f"{' '.join(command)} failed with status {os.waitstatus_to_exitcode(status)}")
-    return took, usage.ru_maxrss // 1024
+    return took, usage.ru_utime + usage.ru_stime, usage.ru_maxrss // 1024
 
 
-def best(repeat: int, before, command: list[str], environment: dict[str, str]) -> tuple[float, int]:
+def best(repeat: int, before, command: list[str], environment: dict[str, str]) -> tuple[float, float, int]:
     figures = []
     for _ in range(repeat):
         before()
         figures.append(run(command, environment))
-    return min(f[0] for f in figures), max(f[1] for f in figures)
+    return min(f[0] for f in figures), min(f[1] for f in figures), max(f[2] for f in figures)
 
 
 def main() -> None:
@@ -118,22 +120,21 @@ def main() -> None:
         )
         # Last, since a child's peak memory counts what its parent held when it was forked.
         anchors = anchor_figures(files, args.repeat)
-        for name, seconds, memory in rows:
+        for name, seconds, processor, memory in rows:
             beside = ", ".join(
-                f"{seconds / anchor:.2f} x {label}"
-                for label, anchor in anchors
-                if name in ("cold", "warm", "previews", "again")
+                f"{seconds / wall:.2f} ({processor / own:.2f}) x {label}" for label, wall, own in anchors
             )
-            print(f"  {name:8s} {seconds:6.2f} s  {memory:4d} MB  {beside}")
-        for label, anchor in anchors:
-            print(f"  {label}: {anchor:.2f} s")
+            print(f"  {name:8s} {seconds:6.2f} ({processor:.2f}) s  {memory:4d} MB  {beside}")
+        for label, wall, own in anchors:
+            print(f"  {label}: {wall:.2f} ({own:.2f}) s")
         if args.ros1:
             lint(args, environment)
 
 
-def anchor_figures(files: list[Path], repeat: int) -> list[tuple[str, float]]:
-    """(label, seconds) of what cannot be done without: reading the bytes, and a plain parse of them."""
-    figures = [("reading", min(timed(lambda: [p.read_bytes() for p in files]) for _ in range(repeat)))]
+def anchor_figures(files: list[Path], repeat: int) -> list[tuple[str, float, float]]:
+    """(label, wall seconds, processor seconds) of what cannot be done without: reading the bytes, and a plain parse of
+    them."""
+    figures = [("reading", *timed(lambda: [p.read_bytes() for p in files], repeat))]
     try:
         import tree_sitter_cpp
         from tree_sitter import Language, Parser
@@ -141,16 +142,18 @@ def anchor_figures(files: list[Path], repeat: int) -> list[tuple[str, float]]:
         return figures
     parser = Parser(Language(tree_sitter_cpp.language()))
     cpp = [p for p in files if not p.name.endswith((".cmake", ".txt"))]
-    figures.append(
-        ("tree-sitter parse", min(timed(lambda: [parser.parse(p.read_bytes()) for p in cpp]) for _ in range(repeat)))
-    )
+    figures.append(("tree-sitter parse", *timed(lambda: [parser.parse(p.read_bytes()) for p in cpp], repeat)))
     return figures
 
 
-def timed(work) -> float:
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
+def timed(work, repeat: int) -> tuple[float, float]:
+    """The least wall seconds and processor seconds of some work."""
+    figures = []
+    for _ in range(repeat):
+        start, own = time.perf_counter(), time.process_time()
+        work()
+        figures.append((time.perf_counter() - start, time.process_time() - own))
+    return min(wall for wall, _ in figures), min(own for _, own in figures)
 
 
 def most_included(root: Path) -> Path | None:
@@ -170,7 +173,7 @@ def lint(args, environment: dict[str, str]) -> None:
     """The ROS 1 workspace, by rosimpact and by catkin_lint."""
     command = [sys.executable, "-m", "rosimpact.impact.cli", "check", str(args.ros1), "--target", "noetic", "--quiet"]
     run(command, environment)
-    ours, _ = best(args.repeat, lambda: None, command, environment)
+    ours, _, _ = best(args.repeat, lambda: None, command, environment)
     print(f"{args.ros1}: rosimpact, warm {ours:.2f} s")
     tool = shutil.which(
         "catkin_lint", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
@@ -178,7 +181,7 @@ def lint(args, environment: dict[str, str]) -> None:
     if tool is None:
         print("  catkin_lint is not installed: pip install catkin_lint")
         return
-    theirs, _ = best(
+    theirs, _, _ = best(
         args.repeat, lambda: None, [tool, "--offline", "-W2", str(args.ros1)], {**environment, "ROS_DISTRO": "noetic"}
     )
     print(f"  catkin_lint {theirs:.2f} s; {ours / theirs:.2f} x catkin_lint")

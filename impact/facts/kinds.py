@@ -70,7 +70,6 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "colcon_settings": ("colcon", "ColconFile"),
     "searched_cpp": ("searches", "SearchedCpp"),
     "searched_text": ("searches", "SearchedText"),
-    "variables_cpp": ("searches", "VariablesCpp"),
     "declared_cpp": ("searches", "DeclaredCpp"),
 }
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""

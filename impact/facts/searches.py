@@ -13,7 +13,7 @@ import msgspec
 from .condition import Condition
 from .cpp import CppFile, places_of
 from .place import Problem
-from .usage import Rows, Table, Use, find_uses, initialises, types_of_variables, uses_of
+from .usage import Rows, Table, Use, find_uses, initialises, uses_of
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -72,13 +72,6 @@ class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
 
 
-class VariablesCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """The types of which a C++ file has a variable or member itself, not a pointer or reference."""
-
-    types: frozenset[str] = frozenset()
-    problems: tuple[Problem, ...] = ()
-
-
 _TYPES = (b"class", b"struct", b"enum", b"typedef", b"using")
 _FAR = 300
 _HEAD = re.compile(rb"[^;{}=]*")
@@ -111,11 +104,6 @@ def _types(data: bytes) -> Iterator[bytes]:
                 for name in _NAMED.finditer(data, at + len(keyword), end + 1):
                     yield name[1]
             at = data.find(keyword, max(end, at + len(keyword)))
-
-
-def variables_cpp(data: bytes, facts: CppFile, table: None) -> VariablesCpp:
-    """The types of variables, as the lines of a C++ file show them."""
-    return VariablesCpp(frozenset(types_of_variables(data)))
 
 
 def _decoded(words: Iterable[bytes]) -> frozenset[str]:

@@ -107,9 +107,6 @@ _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _ASSIGNED = re.compile(rb"\s*=(?!=)")
-_VARIABLE_LINE = re.compile(
-    rb"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?([A-Za-z_]\w*(?:::\w+)+)\s+\w+\s*[;={]"
-)
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
@@ -207,14 +204,6 @@ def initialises(data: bytes, variable: str) -> bool:
         if ahead is not None and ahead.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
             return True
     return False
-
-
-def types_of_variables(data: bytes) -> Iterator[str]:
-    """The qualified types of which some line of a C++ file declares a variable or member itself, not a pointer or
-    reference."""
-    for line in data.split(b"\n"):
-        if b"::" in line and (match := _VARIABLE_LINE.match(line)) is not None:
-            yield match[1].decode()
 
 
 def _line_start(data: bytes, at: int) -> int:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 from ..targets.surface.offers import Standing, standing_at
 from ..targets.surface.offers_cpp import (
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..targets.surface.changes import Event, Form, Line
     from ..targets.surface.store import History
 
+T = TypeVar("T")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
 CLASSES = frozenset(("class", "struct", "union"))
@@ -166,7 +167,8 @@ class Known(NamedTuple):
     use can matter, by their last part.
     bases: classes with the full names of their bases. classes: every class that shows. derived: last parts of classes
     by the last part of a base. heads: first parts of bases, packages that may have them. pure: classes with
-    their methods that only some versions make others implement."""
+    their methods that only some versions make others implement. names_begin, classes_begin: first parts of the names
+    and classes, empty for those without scopes."""
 
     names: dict[str, Name]
     by_last: dict[str, tuple[str, ...]]
@@ -175,6 +177,8 @@ class Known(NamedTuple):
     derived: dict[str, tuple[str, ...]]
     heads: tuple[str, ...]
     pure: dict[str, tuple[str, ...]]
+    names_begin: frozenset[str]
+    classes_begin: frozenset[str]
 
 
 class Changes:
@@ -286,7 +290,46 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
         {base: tuple(those) for base, those in derived.items()},
         tuple(heads),
         {owner: tuple(those) for owner, those in pure.items()},
+        _begins(names),
+        _begins(classes),
     )
+
+
+class _Union(Generic[T]):
+    """Several dictionaries of qualified names as one, in which the first counts. None is copied: a name is looked up in
+    those that have names which begin like it. begins: the first parts of their names by dictionary, empty for those
+    without scopes."""
+
+    def __init__(self, parts: Iterable[tuple[frozenset[str], Mapping[str, T]]]):
+        self._parts: dict[str, list[Mapping[str, T]]] = {}
+        for begins, names in parts:
+            for head in begins:
+                self._parts.setdefault(head, []).append(names)
+
+    def get(self, full: str) -> T | None:
+        """What a name stands for; None for one that is not there."""
+        head, scoped, _ = full.partition("::")
+        for names in self._parts.get(head if scoped else "", ()):
+            if full in names:
+                return names[full]
+        return None
+
+    def __contains__(self, full: str) -> bool:
+        return self.get(full) is not None
+
+    def __getitem__(self, full: str) -> T:
+        found = self.get(full)
+        if found is None:
+            raise KeyError(full)
+        return found
+
+    def begins(self, head: str) -> bool:
+        """Whether names of it begin so."""
+        return bool(head) and head in self._parts
+
+
+def _begins(names: Iterable[str]) -> frozenset[str]:
+    return frozenset(name.partition("::")[0] if "::" in name else "" for name in names)
 
 
 class Vocabulary:
@@ -297,9 +340,6 @@ class Vocabulary:
         self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0, home: Collection[str] = frozenset()
     ):
         self.home = home
-        self.names: dict[str, Name] = {}
-        self.classes: dict[str, str] = {}
-        """Full name of every known class to its package."""
         self._known: dict[str, Known] = {}
         self._by_last: dict[str, tuple[str, ...]] = {}
         self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
@@ -313,9 +353,10 @@ class Vocabulary:
             if known is not None:
                 self._known[package] = known
                 waiting.extend(known.heads)
-        for known in reversed(self._known.values()):  # the first counts
-            self.classes.update(known.classes)
-            self.names.update(known.names)
+        every = self._known.values()
+        self.names = _Union((known.names_begin, known.names) for known in every)
+        self.classes = _Union((known.classes_begin, known.classes) for known in every)
+        """Full name of every known class to its package."""
         wanted = (known.by_last for package, known in self._known.items() if package not in home)
         self.words = frozenset().union(*wanted)
         """Last parts of the names that are looked for."""
@@ -365,7 +406,7 @@ class Vocabulary:
                 if name in self.names:
                     found = name, tuple(dict.fromkeys(between))
                     break
-                between.append(self.classes.get(one, ""))
+                between.append(self.classes.get(one) or "")
             self._members[key] = found
         return self._members[key]
 
@@ -375,11 +416,7 @@ class Vocabulary:
 
     def has_space(self, head: str) -> bool:
         """Whether names of a known package begin so."""
-        return head in self._spaces
-
-    @cached_property
-    def _spaces(self) -> frozenset[str]:
-        return frozenset(full.partition("::")[0] for full in self.classes if "::" in full)
+        return self.classes.begins(head)
 
     def pure(self, full: str) -> tuple[str, ...]:
         """The methods of a class that only some versions make others implement."""

@@ -615,7 +615,7 @@ class _Join:
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
                         std = text.startswith("std::") and text not in _ANNOUNCED
-                        whole = std or text in self.variables(path)
+                        whole = std or text in facts.variables
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             found = self.searched.get(path)
             for word in found.words if found is not None else ():
@@ -950,11 +950,6 @@ class _Join:
         # tf2 has a Quaternion too.
         message = type_in(name) is not None
         return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
-
-    @cache  # noqa: B019  (as long as the join)
-    def variables(self, path: str) -> frozenset[str]:
-        """The types of which a C++ file of the package declares variables itself."""
-        return frozenset().union(*(found.types for found in self.look((path,), "variables_cpp").values()))
 
     def declared(self, paths: Collection[str]) -> Iterator[DeclaredCpp]:
         """What C++ files of the package declare."""

@@ -249,3 +249,18 @@ def test_never_raises_on_bytes(data):
 @given(st.lists(PIECES).map("".join))
 def test_never_raises_on_pieces(text):
     check(text.encode())
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ("class A {\n  arm::Hand left_;\n};", True),
+        ("  static const ::arm::Hand left = made();", True),
+        ("arm::Hand * left_;", False),
+        ("std::shared_ptr<arm::Hand> left_;", False),
+        ("void take(arm::Hand & left);", False),
+        ("// arm::Hand left;", False),
+    ],
+)
+def test_a_variable_of_a_type(code, expected):
+    assert ("arm::Hand" in extract(code.encode()).variables) is expected

@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, declares, initialises, places_of_use, types_of_variables
+from rosimpact.impact.facts.usage import Pattern, declares, initialises, places_of_use
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -150,18 +150,3 @@ INITIALISED = [
 @pytest.mark.parametrize(("code", "expected"), INITIALISED)
 def test_a_variable_that_a_file_declares(code, expected):
     assert initialises(code.encode(), "turn") is expected
-
-
-@pytest.mark.parametrize(
-    ("code", "expected"),
-    [
-        ("class A {\n  arm::Hand left_;\n};", True),
-        ("  static const ::arm::Hand left = made();", True),
-        ("arm::Hand * left_;", False),
-        ("std::shared_ptr<arm::Hand> left_;", False),
-        ("void take(arm::Hand & left);", False),
-        ("// arm::Hand left;", False),
-    ],
-)
-def test_a_variable_of_a_type(code, expected):
-    assert ("arm::Hand" in types_of_variables(code.encode())) is expected

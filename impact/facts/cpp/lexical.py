@@ -47,7 +47,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
     and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
     types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
-    is not followed.
+    is not followed. variables: qualified types of which some line declares a variable or member itself, not a pointer
+    or reference.
     """
 
     includes: tuple[Include, ...]
@@ -60,6 +61,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     references: tuple[Reference, ...] = ()
     main: bool = False
     types: tuple[str, ...] = ()
+    variables: tuple[str, ...] = ()
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -99,6 +101,8 @@ _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _WORDS = re.compile(r"\w+(?:\s*::\s*\w+)*")
 _COLONS = re.compile(r"::")
+_VARIABLE = re.compile(r"[ \t]+\w+[ \t]*[;={]")
+_BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?")
 _TAIL = re.compile(r"\s*::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
@@ -330,6 +334,7 @@ def extract(data: bytes) -> CppFile:
     defined, problems = scanned.defined, scanned.problems
     words: set[str] = set()
     qualified: list[Name] = []
+    variables: dict[str, None] = {}
     seen: dict[tuple[Condition, ...], set[str]] = {}
     backwards = visible[::-1]
     length = len(visible)
@@ -366,6 +371,10 @@ def extract(data: bytes) -> CppFile:
                 continue
             if not name.isascii() or " " in name or "\n" in name or "\t" in name:
                 name = _SPACE.sub("", name)
+            elif name not in variables and _VARIABLE.match(visible, position) is not None:
+                line_start = visible.rfind("\n", 0, name_at) + 1
+                if _BEFORE_VARIABLE.fullmatch(visible, line_start, name_at) is not None:
+                    variables[sys.intern(name)] = None
             if name not in known:
                 name = sys.intern(name)
                 known.add(name)
@@ -386,6 +395,7 @@ def extract(data: bytes) -> CppFile:
             _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
         ),
         types=types_of(visible),
+        variables=tuple(variables),
     )
 
 

@@ -76,6 +76,7 @@ class Filling:
         self.package = ""
         self.path = ""
         self.rewrites: dict[str, Rewrite] = {}
+        self._changed: dict[tuple[int, Rewrite], tuple[tuple[Entry, ...], tuple[Entry, ...]]] = {}
         self.unresolved: list[Unresolved] = []
 
     def at(self, line: int) -> At:
@@ -119,7 +120,7 @@ class Filling:
                 self.miss(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
                 return None
             entries = self.entries(rewrite.source.value, line)
-            return None if entries is None else _rewritten(entries, rewrite)
+            return None if entries is None else self._rewritten(entries, rewrite)
         place = self.place(file)
         if place is None:
             self.miss(line, f"parameters `{file}`", "the file lies in no package that is named")
@@ -131,6 +132,14 @@ class Filling:
         for problem in found.problems:
             self.miss(line, f"parameters `{file}`, line {problem.line}", problem.message)
         return found.entries
+
+    def _rewritten(self, entries: tuple[Entry, ...], rewrite: Rewrite) -> tuple[Entry, ...]:
+        """The same for all nodes that are given one file with one rewrite."""
+        key = id(entries), rewrite
+        known = self._changed.get(key)
+        if known is None:
+            known = self._changed[key] = entries, _rewritten(entries, rewrite)
+        return known[1]
 
     def place(self, path: str) -> tuple[str, str] | None:
         """Package and path in it of a file below a package's share folder."""

@@ -336,7 +336,7 @@ class Surfaces:
         """The ROS generations of which versions of a package are stored."""
         return self._generations.get(package, ())
 
-    @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
+    @lru_cache(maxsize=128)  # noqa: B019  (one of them lives as long as the program)
     def history(self, package: str, ros: int) -> History | None:
         """All versions of a package that a ROS generation has, None when there is none."""
         row = self._row("data, includes", package, ros)
