@@ -845,8 +845,8 @@ class View:
         if (
             own
             and head not in own
-            and path not in self.workspace.rooted_headers
-            and self.target.version(head) is not None
+            and self.target.ever_released(head)
+            and (path not in (rooted := self.workspace.rooted_headers) or all(f"{o}/{path}" in rooted for o in own))
         ):
             own = []  # a file of the workspace ends like this by chance
         if own:
@@ -862,7 +862,7 @@ class View:
             else:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
-        return [p for p in found if p.name not in _BROAD]
+        return _without_broad(found)
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
@@ -904,7 +904,7 @@ class View:
         if name != name.lower():
             # `x-config.cmake` answers to any spelling of X.
             known = known + [p for p in self.providers.cmake(name.lower()) if p not in known]
-        found = [p for p in known if (p.name != name or p.kind != "ros") and p.name not in _BROAD]
+        found = _without_broad([p for p in known if p.name != name or p.kind != "ros"])
         modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
         if modules and name in ("Eigen", "TinyXML", "TinyXML2", "NUMPY", "GSL", "UUID", "Xenomai"):
             # The library alone brings no find module of this name; catkin itself did until hydro.
@@ -1072,6 +1072,11 @@ class View:
             role = "test" if for_tests(found.conditions) else "build"
             required = self.certain(found.conditions)
             yield Need("program", found.name, providers, found.at, role, certain, required)
+
+
+def _without_broad(found: list[Provider]) -> list[Provider]:
+    """Without packages so broad that they bring half of ROS along, unless nobody else answers."""
+    return [p for p in found if p.name not in _BROAD] or found
 
 
 @lru_cache(maxsize=10000)

@@ -42,14 +42,17 @@ ROWS = {
     "the tool for tests brings it": (
         "undeclared-package", "jazzy",
         ament(
-            "sled", "if(BUILD_TESTING)\n  find_package(benchmark REQUIRED)\nendif()",
-            "test_depend:ament_cmake_google_benchmark",
+            "sled", "if(BUILD_TESTING)\n  add_executable(run test/run.cpp)\nendif()",
+            "test_depend:ament_cmake_google_benchmark", test__run_cpp="#include <benchmark/benchmark.h>\n" + MAIN,
         ),
         set(),
     ),
     "built with what is declared to run": (
-        "wrong-dependency-kind", "jazzy", ament("sled", "find_package(angles REQUIRED)", "exec_depend:angles"),
+        "wrong-dependency-kind", "jazzy", ament("twist_mux", "find_package(angles REQUIRED)", "exec_depend:angles"),
         {"error"},
+    ),
+    "no build farm ever built it": (
+        "wrong-dependency-kind", "jazzy", ament("sled", "find_package(angles REQUIRED)", "exec_depend:angles"), set(),
     ),
     "a dependant links the target": ("missing-export", "jazzy", exporting("sled::seat"), {"error"}),
     "a dependant links another one": ("missing-export", "jazzy", exporting("sled::free"), {"warning"}),
@@ -104,6 +107,14 @@ ROWS = {
             run_cpp="#include <gtest/gtest.h>\nTEST(Sled, stands) {}\n" + MAIN,
         ),
         {"error"},
+    ),
+    "it is built on request": (
+        "unlinked-library", "melodic",
+        catkin(
+            "sled", "", "catkin_package()\nadd_executable(run EXCLUDE_FROM_ALL run.cpp)", "gtest",
+            run_cpp="#include <gtest/gtest.h>\nTEST(Sled, stands) {}\n" + MAIN,
+        ),
+        {"warning"},
     ),
     "an installed header that nobody can compile": (
         "removed-header", "melodic",

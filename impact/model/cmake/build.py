@@ -78,7 +78,8 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
     stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
     empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
-    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive.
+    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive. excluded: built on
+    request only (EXCLUDE_FROM_ALL).
     """
 
     name: str
@@ -96,6 +97,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     public_standard: int = 0
     installed_includes: tuple[str, ...] = ()
     static: bool = False
+    excluded: bool = False
 
 
 class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -14,6 +14,7 @@ class TargetDraft:
         "at",
         "conditions",
         "definitions",
+        "excluded",
         "export_name",
         "installed_as",
         "installed_includes",
@@ -41,6 +42,7 @@ class TargetDraft:
         self.export_name = ""
         self.public_standard = 0
         self.installed_includes: dict[str, None] = {}
+        self.excluded = False
         self.installed_as = kind  # the artifact: executable, library, static or module
 
     def finish(self) -> BuildTarget:
@@ -65,6 +67,7 @@ class TargetDraft:
             self.public_standard,
             tuple(self.installed_includes),
             self.installed_as == "static",
+            self.excluded,
         )
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:

@@ -50,6 +50,7 @@ def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
     draft = run.new_target(name, kind, name.at)
     if form in ("STATIC", "OBJECT"):
         draft.installed_as = "static"
+    draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, sources)
 
 
@@ -64,6 +65,7 @@ def add_executable(run: Interpreter, call: Call, args: list[Word]) -> None:
         draft.alias_of = str(rest[1])
         return
     draft = run.new_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable", name.at)
+    draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)])
 
 
@@ -361,6 +363,8 @@ def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> 
         draft.output_name = str(value)
     elif key == "EXPORT_NAME":
         draft.export_name = str(value)
+    elif key == "EXCLUDE_FROM_ALL":
+        draft.excluded = value.upper() not in ("FALSE", "OFF", "0", "NO")
     elif key in ("INTERFACE_LINK_LIBRARIES", "LINK_LIBRARIES"):
         add_links(run, draft, list(split_words([value])), "link", "INTERFACE" if key.startswith("INTERFACE") else "")
     elif key == "INTERFACE_INCLUDE_DIRECTORIES":

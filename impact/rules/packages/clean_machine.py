@@ -40,9 +40,9 @@ def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tu
 
 
 def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
-    """Of a need that is answered by what happens to be installed along: none where the build farm does not install it,
-    as it does what is declared to run."""
-    stops = need.role == "build" and (need.how in ASKED or need.targets)
+    """Of a need that is answered by what happens to be installed along: none where the build farm, which builds the
+    package's releases, installs no such thing, as it does not what is declared to run."""
+    stops = need.role == "build" and (need.how in ASKED or need.targets) and view.target.ever_released(package.name)
     installed = view.roles.on_build_farm(package)
     if not stops or view.answered(need.providers, installed):
         return (Doubt.LUCKY,)
@@ -60,12 +60,13 @@ def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt,
 def is_chance(view: View, package: Package, need: Need, name: str) -> bool:
     """True where what a need rests on is installed for another role than the need's, or is handed on by nobody. name:
     what answers it. Whoever starts launch files has what their command brings, and what is declared for tests brings
-    what tests use."""
+    what tests include and import."""
     if need.role == "aside" or (need.how == "include" and not need.targets):
         return False
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
         return False
-    if need.role == "test" and view.answered(need.providers, view.roles.at_hand(package, "tests alone")):
+    used = need.role == "test" and need.how in ("include", "import")
+    if used and view.answered(need.providers, view.roles.at_hand(package, "tests alone")):
         return False
     if need.subject == package.build_type:
         return not view.roles.has_build_tool(package, need.subject)

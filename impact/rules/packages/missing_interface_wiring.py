@@ -73,8 +73,8 @@ def _field_packages(view: View, package):
     generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.active(g.conditions)]
     if not generated:
         return
-    given = {name for g in generated for name, _ in g.dependencies}
     listed = {file for g in generated for file in g.files}
+    given = {name for g in generated for name, _ in g.dependencies} | _implied(view, listed)
     seen = set()
     for interface in package.digest.interfaces:
         if interface.path not in listed:
@@ -108,6 +108,14 @@ def _field_packages(view: View, package):
                 data = {"type": field.type, "generator": generator}
                 doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
                 yield Diagnostic(_at(interface, field), owner, package.name, data, "dependency", doubts)
+
+
+def _implied(view: View, files: set[str]) -> set[str]:
+    """Packages that rosidl gives to the generator by itself for actions, and for services where they have events.
+    Source: rosidl_generate_interfaces.cmake."""
+    kinds = {file.rpartition(".")[2] for file in files}
+    names = {"action_msgs", "service_msgs"} if "action" in kinds else {"service_msgs"} if "srv" in kinds else set()
+    return {name for name in names if view.target.ros == 2 and view.available(name)}
 
 
 def _at(interface, field):

@@ -80,8 +80,9 @@ def unlinked_library(view: View):
 def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
     """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
     what needs no library."""
-    sure = target.kind == "executable" and word in ("gtest", "gmock")
-    return () if sure else (Doubt.INCOMPLETE,)
+    if target.kind != "executable" or word not in ("gtest", "gmock"):
+        return (Doubt.INCOMPLETE,)
+    return (Doubt.TEST,) if target.excluded else ()
 
 
 def _is_brought(view: View, package: Package, target: str, header: str, word: str) -> bool:
