@@ -17,7 +17,7 @@ from rosimpact.impact.analysis.findings import (
     format_baseline,
     glob_matches,
     mark_new,
-    merge,
+    merge_diagnostics,
     prune_baseline,
     read_baseline,
     split_by_baseline,
@@ -62,7 +62,7 @@ def hit(message="gone", *, line=1, column=1, subject="x.h", path="a.cpp", versio
 
 def merged(*hits, line_text=lambda path, line: f"line {line}", targets=TARGETS) -> list[Finding]:
     named = [(rule, target, each) for rule, target, each in hits]
-    return merge(named, targets=targets, rules=RULES, line_text=line_text)
+    return merge_diagnostics(named, targets=targets, rules=RULES, line_text=line_text)
 
 
 def brief(findings):
@@ -125,9 +125,9 @@ def test_a_fix_is_kept_where_it_is_right_without_a_hit():
         return target == "humble"
 
     options = {"rules": RULES, "line_text": lambda path, line: ""}
-    assert merge(hits, targets=TARGETS, holds=holds, **options)[0].fix == FIX
+    assert merge_diagnostics(hits, targets=TARGETS, holds=holds, **options)[0].fix == FIX
     assert asked == [(FIX, "humble")]
-    assert merge(hits, targets=(*TARGETS, "noetic"), holds=holds, **options)[0].fix == ()
+    assert merge_diagnostics(hits, targets=(*TARGETS, "noetic"), holds=holds, **options)[0].fix == ()
 
 
 def test_findings_come_in_file_order_and_a_hit_without_place_is_kept():
@@ -277,7 +277,7 @@ def test_comments_that_name_a_group(name, ran, stay, unused):
 
 def test_a_rule_that_was_split_keeps_its_fingerprints():
     def merged_as(rule, rules):
-        found = merge([(rule, "", hit())], targets=(), rules=rules, line_text=lambda path, line: "x")
+        found = merge_diagnostics([(rule, "", hit())], targets=(), rules=rules, line_text=lambda path, line: "x")
         return found[0].fingerprint
 
     assert merged_as("lost-macro", SPLIT) == merged_as("lost-name", SPLIT)

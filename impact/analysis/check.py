@@ -19,9 +19,20 @@ from ..rules.rule import Cure, Diagnostic, Finding, Rule, all_rules
 from ..targets.resolve import Chosen
 from ..targets.version import compare as compare_versions
 from ..tree import Tree, WorkingTree
-from . import findings as after
-from . import result_cache as memo
+from . import result_cache
 from .cross_target_fix import Split, add_evidence
+from .findings import (
+    SettingsError,
+    Suppression,
+    apply_settings,
+    mark_new,
+    merge_diagnostics,
+    read_baseline,
+    sort_findings,
+    split_by_baseline,
+    suppress,
+    verify_settings,
+)
 from .report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from .run_rules import Crashes, run_rules
 from .session import (
@@ -113,17 +124,17 @@ def check_opened(
         before = bases.open_base(base_tree, opened, jobs=options.jobs)
         old = run_and_merge(before, chosen, settings, Sources(make_reader(base_tree)), crashed, jobs=options.jobs)
         now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
-        found: Sequence[Finding] = after.mark_new(now.kept, old.kept)
+        found: Sequence[Finding] = mark_new(now.kept, old.kept)
         reached = _reached(workspace, before.workspace, crashed)
     else:
         now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
     if any(finding.evidence for finding in found):
         for view in views:
-            memo.load_changes(store, view.target)
+            result_cache.load_changes(store, view.target)
         found, parted = add_evidence(found, views)
         if parted and "unguarded-split" in chosen:
-            found = after.sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
+            found = sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
     originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
@@ -131,7 +142,7 @@ def check_opened(
         found = fix.make_fixes(found, make_reader(tree), originals)
     known: Sequence[Finding] = ()
     if options.baseline:
-        found, known = after.split_by_baseline(found, after.read_baseline(options.baseline))
+        found, known = split_by_baseline(found, read_baseline(options.baseline))
     notes += store.notes
     failures = [] if workspace.packages else [explain_nothing_analysed(path, opened)]
     failures += [f"the rule {rule} failed{format_targets(crashed[rule, why])}: {why}" for rule, why in crashed]
@@ -169,7 +180,7 @@ def _splits(
     from ..rules.api.unguarded_split import list_splits
 
     found_splits = list_splits((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
-    found = after.merge(
+    found = merge_diagnostics(
         (("unguarded-split", target, one) for target, one in found_splits),
         targets=[view.target.name for view in opened.views],
         rules=rules,
@@ -178,8 +189,8 @@ def _splits(
     old = {finding.package for finding, _ in parted if not finding.new}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
     allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
-    configured = after.apply_settings(marked, settings, rules)
-    return after.suppress(configured, allows, rules=rules, ran=()).kept
+    configured = apply_settings(marked, settings, rules)
+    return suppress(configured, allows, rules=rules, ran=()).kept
 
 
 def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
@@ -242,21 +253,14 @@ def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, .
     """Settings by path, those for the whole workspace first, so that the others go over them."""
     everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
     try:
-        after.verify_settings(everywhere, rules)
-    except after.SettingsError as error:
+        verify_settings(everywhere, rules)
+    except SettingsError as error:
         text = str(error).removeprefix('[paths."**"]: ')
-        raise after.SettingsError(f"{config.path}: [check]: {text}") from None
+        raise SettingsError(f"{config.path}: [check]: {text}") from None
     try:
-        return (*everywhere, *after.verify_settings(config.paths, rules))
-    except after.SettingsError as error:
-        raise after.SettingsError(f"{config.path}: {error}") from None
-
-
-class Judged(NamedTuple):
-    """Findings, and those that allow comments silence."""
-
-    kept: list[Finding]
-    suppressed: list[Finding]
+        return (*everywhere, *verify_settings(config.paths, rules))
+    except SettingsError as error:
+        raise SettingsError(f"{config.path}: {error}") from None
 
 
 def run_and_merge(
@@ -267,7 +271,7 @@ def run_and_merge(
     crashed: Crashes,
     before: Workspace | None = None,
     jobs: int | None = None,
-) -> Judged:
+) -> Suppression:
     """Runs the rules. before: the workspace at the base, for rules that compare. crashed: gets the rules that
     failed; what the others found stands."""
     workspace, views = opened.workspace, opened.views
@@ -276,17 +280,17 @@ def run_and_merge(
     by_name = {view.target.name: view for view in views}
 
     def merge(diagnostics: Iterable[tuple[str, str, Diagnostic]]) -> list[Finding]:
-        found = after.merge(
+        found = merge_diagnostics(
             diagnostics,
             targets=names,
             rules=rules,
             line_text=sources.line,
             holds=lambda fix, target: all(is_right_on(cure, by_name[target]) for cure in fix),
         )
-        return after.apply_settings(found, settings, known)
+        return apply_settings(found, settings, known)
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
-    result = after.suppress(
+    result = suppress(
         merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
         rules=known,
@@ -296,10 +300,10 @@ def run_and_merge(
     if "unused-suppression" in rules and result.unused:
         from ..rules.general.unused_suppression import find_unused
 
-        kept = after.sort_findings(
+        kept = sort_findings(
             [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
         )
-    return Judged(kept, list(result.suppressed))
+    return result._replace(kept=kept)
 
 
 def format_targets(targets: Sequence[str]) -> str:

@@ -45,7 +45,7 @@ def _never(fix: tuple[Cure, ...], target: str) -> bool:
     return False
 
 
-def merge(
+def merge_diagnostics(
     diagnostics: Iterable[tuple[str, str, Diagnostic]],
     *,
     targets: Sequence[str],

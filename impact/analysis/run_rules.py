@@ -11,7 +11,7 @@ from ...edges import processes
 from ...edges.console import unforeseen
 from ..rules.rule import Diagnostic, Rule, Scope
 from ..targets.snapshot import SnapshotError
-from . import result_cache as memo
+from . import result_cache
 
 if TYPE_CHECKING:
     from ..model.workspace import Workspace
@@ -71,17 +71,17 @@ def _run_on_targets(
     found: dict[str, list[Yielded]] = {}
     fresh = []
     for place, view in enumerate(opened.views):
-        known = memo.load_results(opened.store, view, names)
+        known = result_cache.load_results(opened.store, view, names)
         if known is None:
             fresh.append(place)
-            memo.load_changes(opened.store, view.target)
+            result_cache.load_changes(opened.store, view.target)
         else:
             found[view.target.name] = known
     for place, yielded in _run_in_parts(opened, rules, fresh, crashed, jobs or processes.cores()):
         view = opened.views[place]
         found[view.target.name] = yielded
         if not crashed:
-            memo.store_results(opened.store, view, names, yielded)
+            result_cache.store_results(opened.store, view, names, yielded)
     return found
 
 
@@ -174,8 +174,8 @@ def _run_on_flow(
     """What rules yield on the message flow: stored under the hash of its input, since linking the flow is slow."""
     if not rules:
         return []
-    key = memo.flow_key(opened.workspace, before, [rule.name for rule in rules])
-    known = memo.load_flow_results(opened.store, key)
+    key = result_cache.flow_key(opened.workspace, before, [rule.name for rule in rules])
+    known = result_cache.load_flow_results(opened.store, key)
     if known is not None:
         return known
     failed: Crashes = {}
@@ -190,7 +190,7 @@ def _run_on_flow(
     else:
         yielded, failed = _run_flow_part(opened, rules, before, 0)
     if not failed:
-        memo.store_flow_results(opened.store, key, yielded)
+        result_cache.store_flow_results(opened.store, key, yielded)
     crashed.update(failed)
     return yielded
 

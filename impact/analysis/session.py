@@ -24,8 +24,8 @@ from ..targets.resolve import Chosen, choose_targets
 from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 from ..tree.ignore import Index, enclosing_repository
 from ..tree.paths import within
-from . import findings as after
-from . import result_cache as memo
+from .findings import SettingsError, choose_rules
+from .result_cache import load_tracked_names
 
 if TYPE_CHECKING:
     from ..model.install_space import Installed
@@ -104,7 +104,7 @@ def open_workspace(
     asks_flow = chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
-        watched = memo.load_tracked_names(store)
+        watched = load_tracked_names(store)
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second, along=watched.searches)
         discovered = discover(tree, gathered)
         ros = generation(discovered, gathered)
@@ -231,7 +231,7 @@ def select_rules(options: Options, config: Config) -> dict[str, Rule]:
     rules = all_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:
-        return after.choose_rules(rules, select=select, ignore=ignore, preview=options.preview)
-    except after.SettingsError as error:
+        return choose_rules(rules, select=select, ignore=ignore, preview=options.preview)
+    except SettingsError as error:
         option = "--select or --ignore" if options.select or options.ignore else f"{config.path}: [check]"
-        raise after.SettingsError(f"{option}: {error}") from None
+        raise SettingsError(f"{option}: {error}") from None

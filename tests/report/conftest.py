@@ -1,7 +1,7 @@
 """Reports to render: a small team's workspace, one without findings, one full of hostile text."""
 
 import pytest
-from rosimpact.impact.analysis.findings import merge
+from rosimpact.impact.analysis.findings import merge_diagnostics
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Edit, Rule
@@ -96,7 +96,7 @@ def team_hits():
 
 def report_of(hits, files, names=NAMES, **changes) -> Report:
     sources = Sources(files.get)
-    findings = merge(hits, targets=names, rules=RULES, line_text=sources.line)
+    findings = merge_diagnostics(hits, targets=names, rules=RULES, line_text=sources.line)
     targets = tuple(
         ReportedTarget(name, "humble" if name == "robot" else name, "2026-08-22", PLATFORMS[name], "rosimpact.toml")
         for name in names

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from rosimpact.impact.analysis.findings import merge
+from rosimpact.impact.analysis.findings import merge_diagnostics
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Rule, all_rules
 from rosimpact.impact.rules.severity import Doubt
@@ -96,7 +96,7 @@ MERGED = [
 
 @pytest.mark.parametrize(("diagnostics", "expected"), MERGED)
 def test_diagnostics_are_merged_by_their_data(diagnostics, expected):
-    found = merge(diagnostics, targets=("a", "b"), rules={RULE.name: RULE}, line_text=lambda path, line: "")
+    found = merge_diagnostics(diagnostics, targets=("a", "b"), rules={RULE.name: RULE}, line_text=lambda path, line: "")
     assert [(finding.message, finding.help) for finding in found] == expected
 
 
