@@ -275,8 +275,8 @@ def _message(change, old: Text, new: Text) -> str:
 
 
 def precision(folder: Path, count: int, listed: int) -> int:
+    from rosimpact.databuild.surface.clones import Clones
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.model.surface.clones import Clones
     from rosimpact.impact.targets.surface.compare import State, compare
     from rosimpact.impact.targets.version import parts
 
@@ -335,8 +335,8 @@ def precision(folder: Path, count: int, listed: int) -> int:
 
 def recall(folder: Path, table: Path, listed: int) -> int:
     import yaml
+    from rosimpact.databuild.surface.clones import Clone, VersionError
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.model.surface.clones import Clone, VersionError
     from rosimpact.impact.targets.surface.compare import State, compare_states
     from rosimpact.impact.tree import TreeError
 

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import impact
 from ..edges.console import UserError
-from ..impact.model.surface.clones import Clone
-from ..impact.model.surface.releases import git_directory
 from ..impact.tree import TreeError
+from .surface.clones import Clone
+from .surface.releases import git_directory
 
 if TYPE_CHECKING:
     from .jobs import Job, Result

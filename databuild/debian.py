@@ -30,13 +30,13 @@ from ..edges.files import write_file
 from ..impact.facts import surface_cpp
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, offered
 from ..impact.targets.changes import all_rows, all_uses
-from ..impact.targets.machine.unpacked_deb import members
 from ..impact.targets.platform import CODENAMES
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import shipped
 from ..impact.targets.version import at_least, parts
 from . import library_tags
 from .includes import platform_versions
+from .surface.unpacked_deb import members
 
 
 class Library(NamedTuple):

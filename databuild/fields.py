@@ -23,9 +23,9 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.interface import PRIMITIVES, Interface, extract
-from ..impact.model.surface.releases import git_directory
 from ..impact.targets.snapshot import default
 from ..impact.targets.version import parts
+from .surface.releases import git_directory
 
 # One member of an interface: section, name, nested type (`*` behind it for arrays; `!` for constants), written type.
 Member = tuple[str, str, str, str]

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ..impact.model.surface.releases import Release, git_directory, releases_of, tag_of
 from ..impact.targets.snapshot import Snapshot, default
 from ..impact.targets.version import parts
+from .surface.releases import Release, git_directory, releases_of, tag_of
 
 
 class RosFacts(NamedTuple):

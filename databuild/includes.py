@@ -29,7 +29,6 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.condition import Condition
-from ..impact.model.surface.releases import git_directory
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.providers import includes
@@ -38,6 +37,7 @@ from ..impact.targets.surface.includes import Included
 from ..impact.targets.surface.store import Surfaces, shipped
 from ..impact.targets.version import parts
 from .history import _tree
+from .surface.releases import git_directory
 
 _HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
 _INNER = re.compile(r"(?:^|/)(?:details?|impl|internal|aux_|preprocessed|src|arch|private|hal|cuda|experimental/impl)/")

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..impact.facts.store import Store
-from ..impact.model.surface.clones import Clone
-from ..impact.model.surface.package import surfaces_of
 from ..impact.targets.surface.compare import State
 from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
+from .surface.clones import Clone
+from .surface.package import surfaces_of
 from .surface_changes import Lines
 from .surface_file import Including, Packed, Packer, Stored
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..impact.facts import surface_cpp
 from ..impact.facts.surface import HeaderSurface
-from ..impact.model.surface.releases import git_directory
 from ..impact.targets.version import at_least, parts
 from .history import _tree
 from .includes import AV_HEADERS
+from .surface.releases import git_directory
 
 if TYPE_CHECKING:
     import pygit2

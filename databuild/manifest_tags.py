@@ -19,11 +19,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ..impact.model.surface.releases import Release, git_directory, releases_of, tag_of
 from ..impact.targets.distro.distro import version_key
 from ..impact.targets.snapshot import DATA, Snapshot, shipped_info, unpack
 from .git import open_repository
 from .manifests import Declared, changes_only, parse_manifest
+from .surface.releases import Release, git_directory, releases_of, tag_of
 from .write import write_snapshot
 
 _TREE = "tree"

@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from ..edges.files import check_writable_path
-from ..impact.model.surface.clones import Clone, Clones, Release, Version
 from ..impact.targets.distro.distro import DistroTarget, TargetError
 from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import Snapshot, default
 from ..impact.targets.surface.store import History
 from ..impact.targets.version import parts
 from .jobs import Job, Result, Wanted, run
+from .surface.clones import Clone, Clones, Release, Version
 from .surface_file import Packed, write
 
 Versions = Literal["newest", "all"]

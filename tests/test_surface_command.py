@@ -82,8 +82,8 @@ New: 1 (1 method)
 
 
 def test_a_line_fits_eighty_columns(repos, tmp_path):
+    from rosimpact.databuild.surface.clones import Clone
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.model.surface.clones import Clone
     from rosimpact.impact.report.style import PLAIN
     from rosimpact.impact.report.surface import Difference, Source, diff_text, show_text
     from rosimpact.impact.targets.surface.compare import State, compare_states

@@ -43,7 +43,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     from ..report import surface as report
 
     def answer(store) -> str:
-        from ..model.surface.clones import Clone
+        from ...databuild.surface.clones import Clone
         from ..targets.surface.compare import State, compare, compare_states
 
         if os.path.isdir(what) and repos is None:
@@ -78,8 +78,8 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
+        from ...databuild.surface.clones import Clones
         from ...databuild.surfaces import all_distros, build
-        from ..model.surface.clones import Clones
 
         if not distros:
             raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
@@ -103,9 +103,9 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
 
 def _surface(package: str, asked: str, repos: Path | None, store, jobs):
     """Where a version of a package was found, and its state: in clones, else in what is shipped."""
-    from ..model.surface.clones import Clones
-    from ..model.surface.installed import is_installed, surface_at
-    from ..model.surface.stored_versions import StoredVersions
+    from ...databuild.surface.clones import Clones
+    from ...databuild.surface.installed import is_installed, surface_at
+    from ...databuild.surface.stored_versions import StoredVersions
     from ..report.surface import Source
     from ..targets.surface.store import shipped
 
@@ -127,9 +127,9 @@ def _surface(package: str, asked: str, repos: Path | None, store, jobs):
 def _hashes(package: str, asked: str, state) -> dict[str, str]:
     """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
     repository, or of other packages of the distro that was asked for."""
-    from ..model.surface.installed import is_installed
-    from ..model.surface.stored_versions import StoredVersions
-    from ..targets.hashes import hash_of
+    from ...databuild.surface.hashes import hash_of
+    from ...databuild.surface.installed import is_installed
+    from ...databuild.surface.stored_versions import StoredVersions
     from ..targets.surface.store import shipped
 
     others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(shipped())

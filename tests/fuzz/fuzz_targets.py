@@ -27,6 +27,7 @@ from rosimpact.corpus import robust
 from rosimpact.corpus.polite import Answer
 from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
+from rosimpact.databuild.surface import unpacked_deb
 from rosimpact.edges import console
 from rosimpact.edges.documents import DocumentError, load_json, load_toml, load_yaml
 from rosimpact.impact import config, tree
@@ -50,7 +51,6 @@ from rosimpact.impact.model.tracked_names import watched
 from rosimpact.impact.report import github, markdown_text
 from rosimpact.impact.targets import capture, resolve, version
 from rosimpact.impact.targets.distro.distro import TargetError
-from rosimpact.impact.targets.machine import unpacked_deb
 from rosimpact.impact.tree import Entry, ignore, working
 
 for _module, _ in kinds.EXTRACTORS.values():

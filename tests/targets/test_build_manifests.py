@@ -9,7 +9,7 @@ import pygit2
 import pytest
 from rosimpact.databuild.manifest_tags import add, read_clone, read_release_clone
 from rosimpact.databuild.manifests import Declared
-from rosimpact.impact.model.surface.releases import Release
+from rosimpact.databuild.surface.releases import Release
 from rosimpact.impact.targets.snapshot import SCHEMA
 
 SIGNATURE = pygit2.Signature("Robots", "robots@example.org", 1_400_000_000, 0)

@@ -6,8 +6,8 @@ import subprocess
 import pytest
 from rosimpact.databuild import surfaces as build_surfaces
 from rosimpact.databuild.jobs import Job, run
+from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import all_distros, build, plan
-from rosimpact.impact.model.surface.clones import Clones
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 from rosimpact.impact.targets.surface.changes import unpack
 from rosimpact.impact.targets.surface.store import History, Surfaces

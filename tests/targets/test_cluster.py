@@ -10,8 +10,8 @@ import distributed
 import pytest
 from rosimpact.databuild import cluster
 from rosimpact.databuild.cluster import ClusterError, done_by
+from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import build, plan
-from rosimpact.impact.model.surface.clones import Clones
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.store import Surfaces
 from test_build_surfaces import release
@@ -32,7 +32,7 @@ EVERYTHING = ("humble",), tuple(PACKAGES)
 # Children of a process that has imported all they need: a tenth of the time that starting them anew takes.
 PROCESSES = multiprocessing.get_context("forkserver")
 PROCESSES.set_forkserver_preload(
-    ["distributed", "rosimpact.databuild.cluster", "rosimpact.impact.model.surface.package"]
+    ["distributed", "rosimpact.databuild.cluster", "rosimpact.databuild.surface.package"]
 )
 
 

@@ -1,8 +1,8 @@
 """Hashes of messages: those that public tools give for definitions that everybody knows."""
 
 import pytest
+from rosimpact.databuild.surface.hashes import hash_of
 from rosimpact.impact.facts.interface import extract
-from rosimpact.impact.targets.hashes import hash_of
 
 ROS1 = {
     "std_msgs/msg/String": "string data",

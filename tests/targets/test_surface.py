@@ -4,10 +4,10 @@ import subprocess
 import textwrap
 
 import pytest
+from rosimpact.databuild.surface.clones import Clone, Clones, VersionError
+from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.surface.clones import Clone, Clones, VersionError
-from rosimpact.impact.model.surface.package import surfaces_of
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.changes import PARAMETER
 from rosimpact.impact.targets.surface.compare import State, compare, compare_states

@@ -3,11 +3,11 @@
 import textwrap
 
 import pytest
+from rosimpact.databuild.surface.build import KINDS, surface_of
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.kinds import kind_of
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
-from rosimpact.impact.model.surface.build import KINDS, surface_of
 from rosimpact.impact.model.workspace import link
 from rosimpact.impact.targets.surface.build import compare
 from rosimpact.impact.tree import WorkingTree

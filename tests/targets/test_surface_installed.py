@@ -6,10 +6,10 @@ import os
 import tarfile
 
 import pytest
+from rosimpact.databuild.surface.clones import VersionError
+from rosimpact.databuild.surface.installed import is_installed, surface_at
+from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.surface.clones import VersionError
-from rosimpact.impact.model.surface.installed import is_installed, surface_at
-from rosimpact.impact.model.surface.package import surfaces_of
 from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.tree import WorkingTree
 

@@ -3,11 +3,11 @@
 import textwrap
 
 import pytest
+from rosimpact.databuild.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
-from rosimpact.impact.model.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.model.workspace import link
 from rosimpact.impact.targets.surface.python import UNKNOWN, Names, broken_by, compare, signature
 from rosimpact.impact.tree import WorkingTree

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 import zstandard
+from rosimpact.databuild.surface import unpacked_deb
+from rosimpact.databuild.surface.unpacked_deb import DebError, Member, members
 from rosimpact.edges.limits import Limits
-from rosimpact.impact.targets.machine import unpacked_deb
-from rosimpact.impact.targets.machine.unpacked_deb import DebError, Member, members
 
 PACKERS = {
     ".xz": lzma.compress,

@@ -11,14 +11,14 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...facts.kinds import kind_of as kind_by_name
-from ...facts.python.surface import ModuleSurface
-from ...facts.setup import SetupFile
-from ...targets.surface.surface import Module, PythonSurface
+from ...impact.facts.kinds import kind_of as kind_by_name
+from ...impact.facts.python.surface import ModuleSurface
+from ...impact.facts.setup import SetupFile
+from ...impact.targets.surface.surface import Module, PythonSurface
 
 if TYPE_CHECKING:
-    from ..cmake.build import Install
-    from ..workspace import Package
+    from ...impact.model.cmake.build import Install
+    from ...impact.model.workspace import Package
 
 
 class Installed(NamedTuple):

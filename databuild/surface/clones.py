@@ -8,19 +8,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ....edges.console import UserError
-from ...targets.distro.distro import DistroTarget, TargetError
-from ...targets.distro.known import known_distros
-from ...targets.snapshot import Snapshot, default
-from ...targets.surface.compare import State
-from ...targets.surface.surface import Surface
-from ...targets.version import parts
-from ...tree import GitTree, TreeError
+from ...edges.console import UserError
+from ...impact.targets.distro.distro import DistroTarget, TargetError
+from ...impact.targets.distro.known import known_distros
+from ...impact.targets.snapshot import Snapshot, default
+from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.surface import Surface
+from ...impact.targets.version import parts
+from ...impact.tree import GitTree, TreeError
 from .package import of_tree
 from .releases import git_directory, plain_url, releases_of, tag_of
 
 if TYPE_CHECKING:
-    from ...facts.store import Store
+    from ...impact.facts.store import Store
 
 
 class VersionError(UserError):

@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from ..facts.interface import Field, Interface, full_name
+from ...impact.facts.interface import Field, Interface, full_name
 
 Find = Callable[[str], Interface | None]
 """The definition of `package/Name`, a message; None where it is not known."""

@@ -13,20 +13,19 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from ....edges.files import read_file, read_start, too_large
-from ....edges.limits import limits
-from ...facts import interface as interfaces
-from ...facts import manifest as manifests
-from ...facts import surface_cpp
-from ...facts.interface import Field, Interface, Section
-from ...facts.launch import flow as flow_launch
-from ...facts.python import surface as surface_python
-from ...facts.surface import HeaderSurface
-from ...targets.machine.unpacked_deb import DebError, Member, members
-from ...targets.surface.compare import State
-from ...targets.surface.fields import ROS1_SUFFIXES
-from ...targets.surface.includes import compiled
-from ...targets.surface.surface import (
+from ...edges.files import read_file, read_start, too_large
+from ...edges.limits import limits
+from ...impact.facts import interface as interfaces
+from ...impact.facts import manifest as manifests
+from ...impact.facts import surface_cpp
+from ...impact.facts.interface import Field, Interface, Section
+from ...impact.facts.launch import flow as flow_launch
+from ...impact.facts.python import surface as surface_python
+from ...impact.facts.surface import HeaderSurface
+from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.fields import ROS1_SUFFIXES
+from ...impact.targets.surface.includes import compiled
+from ...impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,
     Header,
@@ -38,6 +37,7 @@ from ...targets.surface.surface import (
 )
 from .build import launch_arguments, launch_kind
 from .clones import VersionError
+from .unpacked_deb import DebError, Member, members
 
 _DPKG = Path("/var/lib/dpkg/info")
 _START = 4

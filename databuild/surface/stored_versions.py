@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from ...facts.interface import Interface
-from ...targets.distro.distro import DistroTarget
-from ...targets.snapshot import Snapshot, default
-from ...targets.surface.compare import State
-from ...targets.surface.store import Surfaces
+from ...impact.facts.interface import Interface
+from ...impact.targets.distro.distro import DistroTarget
+from ...impact.targets.snapshot import Snapshot, default
+from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.store import Surfaces
 from .clones import VersionError, newest_with, release_of
 
 

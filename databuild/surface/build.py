@@ -15,18 +15,18 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from ...facts.cmake import CMakeFile
-from ...facts.kinds import kind_of as kind_by_name
-from ...facts.launch.actions import Action, plain
-from ...targets.surface.fields import snake
-from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
-from ..cmake.build import Install, for_tests
-from ..cmake.installed import HEADER_NAME, copied_files
-from ..flow.started import launch_kind
-from ..package import role_of_folder
+from ...impact.facts.cmake import CMakeFile
+from ...impact.facts.kinds import kind_of as kind_by_name
+from ...impact.facts.launch.actions import Action, plain
+from ...impact.model.cmake.build import Install, for_tests
+from ...impact.model.cmake.installed import HEADER_NAME, copied_files
+from ...impact.model.flow.started import launch_kind
+from ...impact.model.package import role_of_folder
+from ...impact.targets.surface.fields import snake
+from ...impact.targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
 
 if TYPE_CHECKING:
-    from ..workspace import Package, Workspace
+    from ...impact.model.workspace import Package, Workspace
 
 KINDS = frozenset((
     "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "pyproject", "plugin_xml", "xml",

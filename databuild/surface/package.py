@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from ...facts import kinds
-from ...facts.interface import Field, Interface, Section
-from ...facts.parameters import last_part
-from ...facts.store import encodable
-from ...source_keys import code_stamp
-from ...targets.surface.includes import compiled
-from ...targets.surface.surface import BuildSurface, Surface
-from ..package import role_of_folder
+from ...impact.facts import kinds
+from ...impact.facts.interface import Field, Interface, Section
+from ...impact.facts.parameters import last_part
+from ...impact.facts.store import encodable
+from ...impact.model.package import role_of_folder
+from ...impact.source_keys import code_stamp
+from ...impact.targets.surface.includes import compiled
+from ...impact.targets.surface.surface import BuildSurface, Surface
 from . import build as surface_build
 from . import python as surface_python
 
 if TYPE_CHECKING:
-    from ...facts.extract import Gathered
-    from ...facts.store import Store
-    from ...tree import Tree
-    from ..workspace import Package
+    from ...impact.facts.extract import Gathered
+    from ...impact.facts.store import Store
+    from ...impact.model.workspace import Package
+    from ...impact.tree import Tree
 
 
 # -- reading -----------------------------------------------------------------------------------------------------------
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, Surface]:
     """The surfaces of all packages of a tree, by name. What is equal in two trees is worked out once: facts by the
     content of their file, surfaces by all that they are made from. jobs: processes to parse with. Raises TreeError."""
-    from ...facts.extract import gather
-    from ..package import Watched
-    from ..workspace import link
+    from ...impact.facts.extract import gather
+    from ...impact.model.package import Watched
+    from ...impact.model.workspace import link
 
     gathered = gather(tree, store, jobs=jobs, kind_of=_kind_for_build)
     workspace = link(tree, gathered, store, None, Watched(), jobs)

@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ....edges.console import UserError
-from ....edges.files import open_regular, too_large
-from ....edges.limits import limits, size_text
+from ...edges.console import UserError
+from ...edges.files import open_regular, too_large
+from ...edges.limits import limits, size_text
 
 _MAGIC = b"!<arch>\n"
 _LARGEST = 64 * 1024 * 1024

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from ...targets.snapshot import Snapshot
-from ...targets.version import parts
+from ...impact.targets.snapshot import Snapshot
+from ...impact.targets.version import parts
 
 
 class Release(NamedTuple):
