@@ -39,9 +39,11 @@ class Job(NamedTuple):
 
     def key(self) -> str:
         """Changes with all that the result depends on."""
-        from ..impact.source_keys import code_stamp
+        from ..edges.limits import limits_stamp
+        from ..impact.source_keys import source_key
 
-        return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
+        about = (self.name, self.states, self.trees, source_key(__name__), limits_stamp())
+        return hashlib.sha1(repr(about).encode()).hexdigest()
 
 
 class Result(NamedTuple):

@@ -24,7 +24,12 @@ from ..edges import files, limits
 from ..edges.limits import limits_stamp
 from .cache import cache_folder
 
-_ROOTS = {"impact": os.path.dirname(__file__), "edges": os.path.dirname(limits.__file__)}
+_HERE = os.path.dirname(__file__)
+_ROOTS = {
+    "impact": _HERE,
+    "edges": os.path.dirname(limits.__file__),
+    "databuild": os.path.join(os.path.dirname(_HERE), "databuild"),
+}
 _PROJECT = __name__.partition(".")[0] + "."
 # Data have stamps of their own, see targets.snapshot.
 _NO_SOURCE = frozenset(("__pycache__", "data"))
@@ -60,7 +65,8 @@ def source_key(*modules: str) -> str:
 @cache
 def code_stamp() -> str:
     """Changes whenever any module of the checker does, and with the user's limits."""
-    return _digest(f"{module} {key}" for module, key in _keys().items()) + limits_stamp()
+    keys = {module: key for module, key in _keys().items() if not module.startswith("databuild.")}
+    return _digest(f"{module} {key}" for module, key in keys.items()) + limits_stamp()
 
 
 def keys_of(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict[str, str]:

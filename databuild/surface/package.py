@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from ...edges.limits import limits_stamp
 from ...impact.facts import kinds
 from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.parameters import last_part
 from ...impact.facts.store import encodable
 from ...impact.model.package import role_of_folder
-from ...impact.source_keys import code_stamp
+from ...impact.source_keys import source_key
 from ...impact.targets.surface.includes import compiled
 from ...impact.targets.surface.surface import BuildSurface, Surface
 from . import build as surface_build
@@ -119,7 +120,7 @@ def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[s
 def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
     """The same as surfaces_of, remembered as a whole for trees that git names by one id. folder: that id, empty for a
     tree that has none."""
-    key = hashlib.sha1(f"{folder} {code_stamp()}".encode()).digest()
+    key = hashlib.sha1(f"{folder} {source_key(__name__)} {limits_stamp()}".encode()).digest()
     if folder:
         memory = store.memo("surface", key)
         if memory is not None:
