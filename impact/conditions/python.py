@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
-from ..facts.python.text import COMPARISONS
+from ..facts.python.text import COMPARISONS, dotted
 from .environment import Environment
 from .logic import both, either, negation
 
@@ -60,7 +60,7 @@ def _python_value(node: ast.expr, environment: Environment) -> Any:
     if isinstance(node, ast.Compare):
         return _python_compare(node, environment)
     if isinstance(node, ast.Name | ast.Attribute):
-        return _python_name(_dotted(node), environment)
+        return _python_name(dotted(node), environment)
     if isinstance(node, ast.Subscript):
         return _python_subscript(node, environment)
     if isinstance(node, ast.Call):
@@ -73,14 +73,6 @@ def _python_value(node: ast.expr, environment: Environment) -> Any:
         )
         return _UNKNOWN if value is None else value
     return _UNKNOWN
-
-
-def _dotted(node: ast.expr) -> str:
-    parts: list[str] = []
-    while isinstance(node, ast.Attribute):
-        parts.append(node.attr)
-        node = node.value
-    return ".".join((node.id, *reversed(parts))) if isinstance(node, ast.Name) else ""
 
 
 def _python_name(name: str, environment: Environment) -> Any:
@@ -118,7 +110,7 @@ def _python_name(name: str, environment: Environment) -> Any:
 
 def _python_subscript(node: ast.Subscript, environment: Environment) -> Any:
     key = node.slice
-    name = _dotted(node.value)
+    name = dotted(node.value)
     if name.endswith("environ") and isinstance(key, ast.Constant):
         return _environment_variable(key.value, environment)
     value = _python_value(node.value, environment)
@@ -146,7 +138,7 @@ def _environment_variable(name: object, environment: Environment) -> Any:
 
 
 def _python_call(node: ast.Call, environment: Environment) -> Any:
-    name = _dotted(node.func)
+    name = dotted(node.func)
     arguments = [_python_value(argument, environment) for argument in node.args]
     if name.endswith(("environ.get", "getenv")) and arguments:
         return _environment_variable(arguments[0], environment)

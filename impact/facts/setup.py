@@ -13,9 +13,10 @@ from msgspec import structs
 from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
-from .python.constants import Constants, Text, Unresolved, dotted
+from .python.constants import Constants, Text, Unresolved
 from .python.source import PythonFile, read
 from .python.source import extract as read_python
+from .python.text import dotted
 
 
 class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
 from ....edges.dispatch import node_methods
+from .text import dotted
 
 
 class Text(str):
@@ -200,15 +201,6 @@ def _filled(pieces: list[str], values: list[str], node: ast.expr) -> Text:
 
 
 Constants.evaluators = node_methods(Constants, "value_")
-
-
-def dotted(node: ast.expr) -> str:
-    parts: list[str] = []
-    while isinstance(node, ast.Attribute):
-        parts.append(node.attr)
-        node = node.value
-    parts.append(node.id if isinstance(node, ast.Name) else "")
-    return ".".join(reversed(parts))
 
 
 def source_of(node: ast.expr) -> str:

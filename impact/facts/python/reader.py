@@ -10,7 +10,7 @@ import msgspec
 from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
-from .text import Text, child_fields
+from .text import Text, caught_by, child_fields
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
 
@@ -43,7 +43,7 @@ class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
 TRY = Condition("python", "try")
 EXCEPT = Condition("python", "try", True)
 # An except that catches these makes the import, or the use of a name, optional.
-_IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
+IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
 _NAME_ERRORS = frozenset(("AttributeError", "NameError", "Exception", "BaseException"))
 # A test that mentions one of these tells about the interpreter or the machine rather than about the run.
 _ABOUT_MACHINE = re.compile(
@@ -366,12 +366,8 @@ class Reader(Objects, Text):
         self.use_conditions, self.conditional = before
 
     def visit_Try(self, node) -> None:
-        caught: set[str] = set()
-        for handler in node.handlers:
-            kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-            for kind in kinds:
-                caught.add("Exception" if kind is None else getattr(kind, "id", None) or getattr(kind, "attr", ""))
-        covers_import = not caught.isdisjoint(_IMPORT_ERRORS)
+        caught = caught_by(node.handlers)
+        covers_import = not caught.isdisjoint(IMPORT_ERRORS)
         covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
         # An except for TypeError expects that a call is refused, and nothing else of what is looked for here.
         outside = self.call_conditions
@@ -406,7 +402,7 @@ class Reader(Objects, Text):
         for item in node.items:
             call = item.context_expr
             if isinstance(call, ast.Call) and _last_name(call.func) == "suppress":
-                suppressed |= any(_last_name(argument) in _IMPORT_ERRORS for argument in call.args)
+                suppressed |= any(_last_name(argument) in IMPORT_ERRORS for argument in call.args)
             self.visit(call)
             if item.optional_vars is not None:
                 self.visit(item.optional_vars)

@@ -13,8 +13,9 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem
-from .reader import EXCEPT, TRY
+from .reader import EXCEPT, IMPORT_ERRORS, TRY
 from .source import read
+from .text import caught_by, dotted
 
 
 class Parameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -95,7 +96,6 @@ class ModuleSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 LATE = Condition("python", "late")
 LONGEST = 80
-_IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
 _WARNINGS = frozenset(("DeprecationWarning", "PendingDeprecationWarning", "FutureWarning"))
 _NAMESPACES = frozenset(("globals", "locals", "vars"))
 _PROPERTIES = frozenset(("property", "cached_property", "abstractproperty"))
@@ -208,7 +208,7 @@ class _Module:
 
     def attempt(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """try: with an except that covers ImportError, what stands in it may be missing, as may the other branch."""
-        guarded = any(_catches(handler.type) for handler in node.handlers)
+        guarded = not caught_by(node.handlers).isdisjoint(IMPORT_ERRORS)
         self.block(node.body, scope, (*conditions, TRY) if guarded else conditions)
         for handler in node.handlers:
             self.block(handler.body, scope, (*conditions, EXCEPT))
@@ -505,15 +505,10 @@ def _text(node: ast.AST) -> str:
 
 def _dotted(node: ast.AST) -> str:
     """A path of names, calls left out (`deprecated('x')` is `deprecated`); empty for anything else."""
-    if isinstance(node, ast.Call):
-        return _dotted(node.func)
-    parts: list[str] = []
-    while isinstance(node, ast.Attribute):
-        parts.append(node.attr)
-        node = node.value
-    if not isinstance(node, ast.Name):
-        return ""
-    return ".".join([node.id, *reversed(parts)])
+    while isinstance(node, ast.Call):
+        node = node.func
+    path = dotted(node) if isinstance(node, ast.expr) else ""
+    return "" if path.startswith(".") else path
 
 
 def _literal(node: ast.expr | None) -> str:
@@ -526,14 +521,6 @@ def _literal(node: ast.expr | None) -> str:
         text = _text(node)
         return text if len(text) <= LONGEST else ""
     return ""
-
-
-def _catches(kind: ast.expr | None) -> bool:
-    """True for an except that covers ImportError."""
-    if kind is None:
-        return True
-    kinds = kind.elts if isinstance(kind, ast.Tuple) else [kind]
-    return any(_dotted(one).rpartition(".")[2] in _IMPORT_ERRORS for one in kinds)
 
 
 def _deprecated(decorators: Iterable[ast.expr]) -> str:

@@ -4,7 +4,7 @@ import ast
 import operator
 import re
 import string
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 # A comment, or a string in which a `#` is none.
@@ -48,6 +48,25 @@ def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
     }
     # Their fields hold strings and constants, not nodes.
     return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
+
+
+def dotted(node: ast.expr) -> str:
+    """A path of names; nothing stands before the first dot of one that begins with anything else."""
+    parts: list[str] = []
+    while isinstance(node, ast.Attribute):
+        parts.append(node.attr)
+        node = node.value
+    parts.append(node.id if isinstance(node, ast.Name) else "")
+    return ".".join(reversed(parts))
+
+
+def caught_by(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
+    """The last parts of the names of exceptions that are caught; `Exception` for all of them."""
+    caught: set[str] = set()
+    for handler in handlers:
+        for kind in handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]:
+            caught.add("Exception" if kind is None else dotted(kind).rpartition(".")[2])
+    return caught
 
 
 class Text:
