@@ -1,4 +1,4 @@
-"""Takes rows out of data/changes*.json and uses*.json that the stored surfaces, or the table of interfaces, answer.
+"""Takes rows out of data/changes*.json that the stored surfaces, or the table of interfaces, answer.
 
 A row says that a name of a ROS package is gone from some version, or distro, on. Where surfaces of the package are
 stored, each stored version tells whether the name is there. A row is
@@ -12,8 +12,8 @@ stored, each stored version tells whether the name is there. A row is
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
 that say more stay, and of reviewed rows all but the answered and bare ones. Platform libraries have no stored surfaces,
 and their rows stay. Of fields and interfaces the table of interfaces alone is asked, so that a row only lends a
-replacement. A row of uses whose pattern is no more than a qualified name says that the name came with a version; the
-resolver finds it wherever it stands.
+replacement. Rows of uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds
+places that the resolver does not see, such as template arguments and braced initialisers.
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -21,7 +21,6 @@ resolver finds it wherever it stands.
 from __future__ import annotations
 
 import json
-import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -29,10 +28,8 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from ..edges.files import write_file
-from ..impact.targets.changes import DISTROS, Row, all_uses
+from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import DATA
@@ -73,25 +70,6 @@ def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: i
         if worst in answers:
             return worst
     return "unknown"
-
-
-def verdict_of_use(row: Row) -> str:
-    """The same of a row of uses; `unknown` for one whose pattern is more than a qualified name that came."""
-    pattern = row.pattern
-    if pattern is None or pattern.language != "cpp" or row.removed_in or not row.new_since:
-        return "unknown"
-    bare = {"word": pattern.word, "before": pattern.before, "help": pattern.help}
-    scope = pattern.before.replace("\\b", "").replace("\\s*", "")
-    if msgspec.to_builtins(pattern) != msgspec.to_builtins(type(pattern)(**bare)) or not _SCOPE.fullmatch(scope):
-        return "unknown"
-    answers = []
-    for ros in (row.ros,) if row.ros else (1, 2):
-        told = [(version, not has) for version, has in _told("api", row.package, scope + pattern.word, ros)]
-        answers.append(_compare(told, _gone_from(row.new_since, row.package, ros)))
-    return "answered" if "answered" in answers and "contradicted" not in answers else "unknown"
-
-
-_SCOPE = re.compile(r"(?:\w+::)+")
 
 
 def _is_bare(package: str, name: str) -> bool:
@@ -251,37 +229,23 @@ def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
     return {**content, "changes": kept}, count
 
 
-def rewritten_uses(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
-    """The same of a file of uses."""
-    content, count, kept = json.loads(file.read_bytes()), Counter[tuple[str, str]](), []
-    for group in content["uses"]:
-        verdicts = {label: "unknown" if group.get("library") else verdict_of_use(all_uses()[label])
-                    for label in group["uses"]}  # fmt: skip
-        count.update((group["kind"], found) for found in verdicts.values())
-        left = {label: use for label, use in group["uses"].items() if verdicts[label] != "answered"}
-        if left:
-            kept.append({**group, "uses": left})
-    return {"uses": kept}, count
-
-
 def dumped(content: dict[str, Any]) -> str:
     """A file's content, a line for each name."""
-    what, inner = ("uses", "uses") if "uses" in content else ("changes", "names")
     groups = []
-    for group in content[what]:
-        head = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in group.items() if key != inner)
-        names = ",\n  ".join(f"{json.dumps(old)}: {json.dumps(new)}" for old, new in group[inner].items())
-        groups.append(f'{{{head}, "{inner}": {{\n  {names}\n}}}}')
-    rest = "".join(f", {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if key != what)
-    return f'{{"{what}": [\n' + ",\n".join(groups) + f"\n]{rest}}}\n"
+    for group in content["changes"]:
+        head = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in group.items() if key != "names")
+        names = ",\n  ".join(f"{json.dumps(old)}: {json.dumps(new)}" for old, new in group["names"].items())
+        groups.append(f'{{{head}, "names": {{\n  {names}\n}}}}')
+    rest = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if key != "changes")
+    return '{"changes": [\n' + ",\n".join(groups) + "\n], " + rest + "}\n"
 
 
 def main(arguments: list[str]) -> None:
     """Prints what becomes of the rows of each file, and with --write takes out those that are superseded."""
-    for file in (*sorted(DATA.glob("changes*.json")), *sorted(DATA.glob("uses*.json"))):
-        content, count = rewritten_uses(file) if file.name.startswith("uses") else rewritten(file)
+    for file in sorted(DATA.glob("changes*.json")):
+        content, count = rewritten(file)
         before = sum(count.values())
-        after = sum(len(group.get("names") or group["uses"]) for group in content.get("changes") or content["uses"])
+        after = sum(len(group["names"]) for group in content["changes"])
         print(f"{file.name}: {before} rows, {after} left")
         for (kind, found), number in sorted(count.items()):
             print(f"  {kind:16} {found:13} {number}")

@@ -566,6 +566,10 @@ EXAMPLES = {
         "for (std::list<hardware_interface::ControllerInfo>::const_iterator it = a.begin(); it != a.end(); ++it) { f(it->hardware_interface); }",
         "for (std::list<hardware_interface::ControllerInfo>::const_iterator it = a.begin(); it != a.end(); ++it) { f(it->claimed_resources[0].hardware_interface); }",
     ),
+    "hardware_interface::InterfaceResources": (
+        "std::vector<hardware_interface::InterfaceResources> a;",
+        "std::set<std::string> a;",
+    ),
     "RobotHW::read(time, period)": (
         "class A : public hardware_interface::RobotHW { void read(const ros::Time & time, const ros::Duration & period) override; };",
         "class A : public hardware_interface::RobotHW { void read(const ros::Time & time, const ros::Duration & period); };",
