@@ -87,7 +87,9 @@ def main() -> None:
         macro = next((p for p in sorted(copy.rglob("cmake/*.cmake")) if "Find" not in p.name), None)
 
         def call() -> None:
-            text = macro.read_text() if macro is not None else ""
+            if macro is None:
+                return
+            text = macro.read_text()
             macro.write_text(MACRO.sub(rf"\1\nfind_package(Of{time.time_ns()})", text, count=1))
 
         def change(path: Path | None, line: str):
