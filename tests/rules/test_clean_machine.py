@@ -31,6 +31,14 @@ ROWS = {
     "before bloom left tests out": ("undeclared-package", "foxy@2021-06-01", {**SLED, **SLEDGE}, {"error"}),
     "since, where a neighbour declares it": ("undeclared-package", "foxy@2022-06-01", {**SLED, **SLEDGE}, {"warning"}),
     "since, where nobody does": ("undeclared-package", "foxy@2022-06-01", SLED, {"error"}),
+    "only what is declared to run brings what configures tests": (
+        "undeclared-package", "melodic@2020-01-01",
+        catkin(
+            "twist_mux", "", "if(CATKIN_ENABLE_TESTING)\n  find_package(rostest REQUIRED)\nendif()\ncatkin_package()",
+            "exec_depend:tf",
+        ),
+        {"error"},
+    ),
     "modules are required": (
         "undeclared-package", "kinetic", catkin("sled", "", MODULES.format("REQUIRED "), BRING), {"error"},
     ),

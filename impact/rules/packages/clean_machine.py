@@ -42,9 +42,10 @@ def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tu
 def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
     """Of a need that is answered by what happens to be installed along: none where the build farm, which builds the
     package's releases, installs no such thing, as it does not what is declared to run."""
-    stops = need.role == "build" and (need.how in ASKED or need.targets) and view.target.ever_released(package.name)
+    made = need.role == "build" or (need.role == "test" and need.how in ASKED and view.roles.farm_makes_tests)
+    stops = made and (need.how in ASKED or need.targets)
     installed = view.roles.on_build_farm(package)
-    if not stops or view.answered(need.providers, installed):
+    if not stops or not view.target.ever_released(package.name) or view.answered(need.providers, installed):
         return (Doubt.LUCKY,)
     return (Doubt.INCOMPLETE,) if _is_grouped(package) or view.list_unknown(installed) else ()
 
