@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from .surface import BuildSurface, PythonSurface, Surface
 
 _TYPES = CLASSES | {"enum", "alias"}
+
+
 class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
 
