@@ -16,6 +16,8 @@ import msgspec
 from .condition import Condition
 from .cpp import KEYWORDS, CppFile, scan, standing, text_of
 
+_MEMBER = r"(?:->|\.)\s*"
+
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
@@ -43,6 +45,11 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     inside: str = ""
     file: str = ""
     unless: str = ""
+
+    @property
+    def shows_no_type(self) -> bool:
+        """True for a member of something whose type nothing shows, such as `->stamp`."""
+        return not self.arguments and self.before == _MEMBER
 
     @property
     def calls(self) -> bool:

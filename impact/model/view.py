@@ -762,9 +762,10 @@ class View:
             and not target.other_generation(n)  # nor does a package that cannot be had
         )  # fmt: skip
 
-    def sealed(self, package: Package) -> list[str]:
+    def sealed(self, package: Package, wanted: str = "") -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
-        platform has them (Gazebo comes from its own): they may bring any system library."""
+        platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
+        package; released libraries that are called like it and whose contents are not stored may bring it too."""
         if package.name not in self._sealed:
             self._sealed[package.name] = [
                 n for n in self.closure(package)
@@ -772,7 +773,17 @@ class View:
                 and (libraries := [d for d in self.debian(n) if d.endswith("-dev") or d.startswith("gazebo")])
                 and (n.startswith("gazebo") or not self.providers.knows_system([n, *libraries]))
             ]  # fmt: skip
-        return self._sealed[package.name]
+        stem = re.split(r"[^a-z]", wanted.lower())[0]
+        unread = [n for n in self.closure(package) if stem in n and self._is_unread_library(n)] if len(stem) > 2 else []
+        return [*self._sealed[package.name], *unread]
+
+    def _is_unread_library(self, name: str) -> bool:
+        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson, and what it
+        installs is not stored."""
+        if name in self.workspace.packages or self.target.version(name) is None:
+            return False
+        types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
+        return not types.isdisjoint(("cmake", "meson")) and self.offers.package(name) is None
 
     def debian(self, name: str) -> frozenset[str]:
         """What a rosdep key installs here."""

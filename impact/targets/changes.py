@@ -207,6 +207,12 @@ def function_of(label: str) -> str:
     return row.pattern.word if row is not None and row.pattern is not None and row.pattern.calls else ""
 
 
+def shows_no_type(label: str) -> bool:
+    """Whether a use is a member of something whose type nothing shows, by its label."""
+    row = all_uses().get(label)
+    return row is not None and row.pattern is not None and row.pattern.shows_no_type
+
+
 @cache
 def transitive_includes() -> tuple[TransitiveInclude, ...]:
     """Every header that is known to have stopped coming along. Raises SnapshotError when the data cannot be read."""

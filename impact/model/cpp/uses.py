@@ -159,7 +159,8 @@ class ApiUses:
             return self._found(full, use, True, ()) if full in names else None
         inner = self._of_this(use)
         if inner is not None:
-            return inner
+            # Without the member, the name is that of the package, if it declares one.
+            return None if self.resolver.declares(word) else inner
         for space in (*self._spaces(use.place), *self.resolver.opened(use.place)):
             full = f"{space}::{word}"
             if full in names and names[full].what not in ("method", "field") and not self.resolver.declares(word):

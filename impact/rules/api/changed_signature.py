@@ -37,7 +37,7 @@ from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import of_row
-from ...targets.changes import function_of, standards_of
+from ...targets.changes import function_of, shows_no_type, standards_of
 from ...targets.providers.library import default_standard, standard_year
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import Change
@@ -137,6 +137,7 @@ def _list_reviewed_of(
         found = found if ahead is None else found.on(ahead)
         doubts = doubts_of_place(view, use.role, use.conditions)
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
+        doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
         data = {**data_of(found), "standard": standard, "advice": change.new}
         if standard:
             data["since"] = ""  # the version is bound to the standard

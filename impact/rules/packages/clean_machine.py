@@ -117,7 +117,7 @@ def _unknown(view: View, package: Package, need: Need, name: str) -> tuple[Doubt
     what is needed."""
     if _is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
         return (Doubt.INCOMPLETE,)
-    if need.providers[0].kind == "system" and view.sealed(package):
+    if need.providers[0].kind == "system" and view.sealed(package, need.subject):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()

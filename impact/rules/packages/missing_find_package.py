@@ -103,7 +103,9 @@ def missing_find_package(view: View):
         shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         closure = view.closure(package)
         seen = set()
-        given = (stops_at_names(view) or Doubt.LUCKY,)
+        # The configuration of a library whose contents are not known may find others.
+        unread = any(view.sealed(package, f.name) for f in package.build.found)
+        given = (stops_at_names(view) or Doubt.LUCKY, not unread or Doubt.INCOMPLETE)
         for at, name in list_given_names(view, package):
             if name in reachable or name in seen or name in package.digest.modules or name == package.name:
                 continue
