@@ -50,9 +50,11 @@ def watched() -> Watched:
             modules.setdefault(row.package, []).append((label, _bare(row.pattern)))
     parameters = []
     for label, row in all_uses("behaviour").items():
-        if row.pattern is not None and row.pattern.language == "yaml":
+        if row.pattern is None:
+            continue
+        if row.pattern.language == "yaml":
             parameters.append((label, _bare(row.pattern)))
-        for module in row.pattern.imports if row.pattern is not None else ():
+        for module in row.pattern.imports:
             modules.setdefault(module, []).append((label, _bare(row.pattern)))
     fields = default_fields()
     version = hashlib.sha1(

@@ -662,6 +662,7 @@ class DistroTarget(Target):
             self._changes = _tables.get(self.identity()) if self._data is snapshots.default() else None
             if self._changes is None:
                 self.set_changes(changes_in_force(self))
+        assert self._changes is not None
         return self._changes
 
 
