@@ -377,6 +377,8 @@ def test_secrets_are_in_no_message_no_log_and_no_store(server, tmp_path, monkeyp
     logging.getLogger().addHandler(handler)
     level = logging.getLogger().level
     logging.getLogger().setLevel(logging.DEBUG)
+    # Dask switches off the loggers that it finds when it is imported.
+    monkeypatch.setattr(logging.getLogger("urllib3.connectionpool"), "disabled", False)
     server.questions = [question(n) for n in range(1, 120)]
     said: list[str] = []
     try:

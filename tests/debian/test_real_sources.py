@@ -20,8 +20,7 @@ NAMES = ("ros-ros-comm", "ros-image-pipeline")
 
 # Of the versions that were read: packages counted by hand, and defects as severity, rule, package, path and subject.
 READ = {
-    # Python 2 in scripts that no rule installs, and imports that would close a cycle if they were declared; of what a
-    # package runs with and does not declare, the first is a warning.
+    # Python 2 in scripts that no rule installs, and imports that would close a cycle if they were declared.
     ("ros-ros-comm", "1.15.15"): (
         32,
         """
@@ -29,7 +28,7 @@ READ = {
         note    python-version topic_tools tools/topic_tools/scripts/demux_delete  `except rospy.ServiceException, e`
         note    python-version topic_tools tools/topic_tools/scripts/demux_list  `except rospy.ServiceException, e`
         note    python-version topic_tools tools/topic_tools/scripts/demux_select  `except rospy.ServiceException, e`
-        warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosnode
+        note    undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosnode
         note    undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosservice
         note    undeclared-package  topic_tools  tools/topic_tools/scripts/relay_field   rostopic
         """,
