@@ -23,6 +23,7 @@ from ..rules.fix_actions import Declare, Insert, Remove, Replace
 from ..rules.rule import Cure, Diagnostic, Edit
 from ..rules.severity import Doubt
 from ..source_keys import code_stamp
+from ..targets.availability import horizons
 from ..targets.changes import looked_for
 from ..targets.evidence import Evidence
 from ..targets.snapshot import data_stamp
@@ -140,9 +141,8 @@ def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[
 
 
 def load_changes(store: Store, target: Target) -> None:
-    """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
-    newest = target.newest()
-    for one in (target, newest) if newest is not None else (target,):
+    """Gives a target, and what it is going to be, the changes an earlier run worked out."""
+    for one in (target, *(ahead.target for ahead in horizons(target))):
         if one.has_changes():
             continue
         name = hashlib.sha1(one.identity().encode()).digest()

@@ -1,7 +1,7 @@
 """Is it there, on this target? One answer for all kinds of names, from what is shipped."""
 
 import pytest
-from rosimpact.impact.targets.availability import Availabilities, Symbol, horizons
+from rosimpact.impact.targets.availability import Availabilities, Symbol, coming_changes, horizons
 from rosimpact.impact.targets.distro.distro import DistroTarget
 
 OLD, NEW = "tf2_geometry_msgs/tf2_geometry_msgs.h", "tf2_geometry_msgs/tf2_geometry_msgs.hpp"
@@ -83,3 +83,11 @@ def test_a_date_has_a_next_sync_and_an_update():
 
 def test_a_target_answers_itself():
     assert DistroTarget("jazzy").availability(Symbol("package", "rclcpp")).state == "present"
+
+
+def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
+    target = DistroTarget("rolling", "2023-04-05")
+    assert "SHARED_PTR_DEFINITIONS" not in {change.old for change in target.changes()}
+    (soon,) = (ahead for ahead in horizons(target) if ahead.soon)
+    assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming_changes(target, soon)}
+    assert soon.target.identity() != target.identity()

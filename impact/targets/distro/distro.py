@@ -129,7 +129,10 @@ class DistroTarget(Target):
     def identity(self) -> str:
         stamp = snapshots.data_stamp()
         return repr(
-            (self._asked, self.name, self.distro, self.date, self.platform, self._overrides, self._rules, stamp)
+            (
+                self._asked, self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules,
+                stamp,
+            )  # fmt: skip
         )
 
     def changed(
@@ -638,7 +641,9 @@ class DistroTarget(Target):
 
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""
-        return self._changes is not None or self.identity() in _tables
+        if self._changes is None and self._data is snapshots.default():
+            self._changes = _tables.get(self.identity())
+        return self._changes is not None
 
     def set_changes(self, changes: tuple[Change, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
@@ -656,12 +661,10 @@ class DistroTarget(Target):
         return self._availabilities.on_horizon(symbol)
 
     def changes(self) -> ChangeTable:
-        if self._changes is None:
+        if not self.has_changes():
             from ..changes import changes_in_force
 
-            self._changes = _tables.get(self.identity()) if self._data is snapshots.default() else None
-            if self._changes is None:
-                self.set_changes(changes_in_force(self))
+            self.set_changes(changes_in_force(self))
         assert self._changes is not None
         return self._changes
 
