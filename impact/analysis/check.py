@@ -109,7 +109,7 @@ def check_opened(
     """
     started = time.perf_counter() if started is None else started
     rules = all_rules()
-    tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
+    tree, store, gathered, workspace, targets, views, config, _, installed, shelves = opened
     chosen = select_rules(options, config)
     settings = _settings(rules, config)
     sources = Sources(make_reader(tree))

@@ -13,9 +13,8 @@ from ..facts.extract import gather
 from ..model.flow.file_selection import code_kinds
 from ..model.view import View
 from ..model.workspace import link
-from ..targets.asked_versions import AskedVersions
 from ..tree import GitTree, Tree, TreeError, at_merge_bases, inside, shown
-from . import result_cache as memo
+from .result_cache import load_tracked_names
 
 if TYPE_CHECKING:
     from .session import Opened
@@ -110,10 +109,9 @@ def read_pinned(path: Path) -> dict[str, str]:
 def open_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     second = code_kinds(tree) if opened.gathered.second is not None else None
-    watched = memo.load_tracked_names(opened.store)
+    watched = load_tracked_names(opened.store)
     gathered = gather(tree, opened.store, jobs=jobs, second=second, along=watched.searches)
-    asked = AskedVersions(chosen.target for chosen in opened.targets)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs, asked=asked)
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs, asked=opened.asked)
     views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

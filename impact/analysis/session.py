@@ -65,8 +65,8 @@ Progress = Callable[[int, int], None]
 
 
 class Opened(NamedTuple):
-    """A workspace ready to be asked: its files, facts, model, and how each target sees it; what is installed of it, and
-    what there is to run that with."""
+    """A workspace ready to be asked: its files, facts, model, and how each target sees it; the versions of other
+    packages that uses of them may be wrong in; what is installed of it, and what there is to run that with."""
 
     tree: Tree
     store: Store
@@ -75,6 +75,7 @@ class Opened(NamedTuple):
     targets: Sequence[Chosen]
     views: Sequence[View]
     config: Config
+    asked: AskedVersions
     installed: Installed | None = None
     shelves: Sequence[Shelf] = ()
 
@@ -121,7 +122,7 @@ def open_workspace(
             installed = built.of_workspace(options.install, root, workspace, store, options.jobs)
             shelves = built.shelves(installed, targets, config)
             gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
-        yield Opened(tree, store, gathered, workspace, targets, views, config, installed, shelves)
+        yield Opened(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
 
 
 def _left_out(workspace: Workspace) -> Iterator[PathProblem]:

@@ -120,7 +120,7 @@ class View:
         self._cmake: dict[str, tuple[Provider, ...]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
-        self._sealed: dict[str, list[str]] = {}
+        self._opaque: dict[str, list[str]] = {}
         self._unknown: dict[str, tuple[str, ...]] = {}
         self._around: dict[str, frozenset[str]] = {}
         self._files: dict[str, tuple[str, ...]] = {}
@@ -762,12 +762,12 @@ class View:
             and not target.other_generation(n)  # nor does a package that cannot be had
         )  # fmt: skip
 
-    def sealed(self, package: Package, wanted: str = "") -> list[str]:
+    def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
         platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
         package; released libraries that are called like it and whose contents are not stored may bring it too."""
-        if package.name not in self._sealed:
-            self._sealed[package.name] = [
+        if package.name not in self._opaque:
+            self._opaque[package.name] = [
                 n for n in self.closure(package)
                 if n not in self.workspace.packages
                 and (libraries := [d for d in self.debian(n) if d.endswith("-dev") or d.startswith("gazebo")])
@@ -775,7 +775,7 @@ class View:
             ]  # fmt: skip
         stem = re.split(r"[^a-z]", wanted.lower())[0]
         unread = [n for n in self.closure(package) if stem in n and self._is_unread_library(n)] if len(stem) > 2 else []
-        return [*self._sealed[package.name], *unread]
+        return [*self._opaque[package.name], *unread]
 
     def _is_unread_library(self, name: str) -> bool:
         """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson, and what it

@@ -148,7 +148,7 @@ def _of_release(
         return
     found = view.lost_header(path)
     if found is not None:
-        if found.form != "platform" or not (view.sealed(package, path) or view.blind(package)):
+        if found.form != "platform" or not (view.opaque_libraries(package, path) or view.blind(package)):
             yield diagnose(found, at, path, package.name, doubts, kind=found.form)
         return  # else something that comes along has contents that are not known
     if (own := _find_misspelt(view, package, path)) is not None:

@@ -47,7 +47,7 @@ def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, .
     installed = view.roles.on_build_farm(package)
     if not stops or not view.target.ever_released(package.name) or view.answered(need.providers, installed):
         return (Doubt.LUCKY,)
-    return (Doubt.INCOMPLETE,) if _is_grouped(package) or view.list_unknown(installed) else ()
+    return (Doubt.INCOMPLETE,) if is_grouped(package) or view.list_unknown(installed) else ()
 
 
 def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
@@ -115,15 +115,15 @@ def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Do
 def _unknown(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """INCOMPLETE where something that comes along has dependencies or contents that are not known, so that it may bring
     what is needed."""
-    if _is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
+    if is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
         return (Doubt.INCOMPLETE,)
-    if need.providers[0].kind == "system" and view.sealed(package, need.subject):
+    if need.providers[0].kind == "system" and view.opaque_libraries(package, need.subject):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
 
 
-def _is_grouped(package: Package) -> bool:
+def is_grouped(package: Package) -> bool:
     """True for a package that depends on a group: any member that is there can bring anything."""
     return any(d.kind == "group" for d in package.manifest.dependencies)
 

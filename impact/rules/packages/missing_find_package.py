@@ -103,14 +103,14 @@ def missing_find_package(view: View):
         shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         closure = view.closure(package)
         seen = set()
-        # The configuration of a library whose contents are not known may find others.
-        unread = any(view.sealed(package, f.name) for f in package.build.found)
-        given = (stops_at_names(view) or Doubt.LUCKY, not unread or Doubt.INCOMPLETE)
         for at, name in list_given_names(view, package):
             if name in reachable or name in seen or name in package.digest.modules or name == package.name:
                 continue
             seen.add(name)
-            yield Diagnostic(at, name, package.name, kind="given", doubts=given)
+            # The configuration of a library whose contents are not known may find others.
+            opaque = any(view.opaque_libraries(package, f.name) for f in package.build.found)
+            doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
+            yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
         sought = {fold(f.name) for f in package.build.found if f.name in outside}
         linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in view.weighed(package):

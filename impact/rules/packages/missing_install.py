@@ -131,8 +131,7 @@ def _list_targets(view: View, package, installs, used) -> Iterator[Diagnostic]:
             why = "program"
         if why:
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
-            runs = target.kind == "executable" and _is_started(view, package, name)
-            stops = installed and (why == "exported" or runs)
+            stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
             doubts = () if stops and not package.build.unresolved else (Doubt.DISTURBS,)
             yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts)
 

@@ -27,6 +27,7 @@ from ..fix_actions import Declare
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
+from .clean_machine import is_grouped
 
 # Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
 # ament_cmake_ros).
@@ -75,8 +76,7 @@ def undeclared_test_command(view: View):
 
 
 def _doubts(view: View, package, name: str, conditions) -> tuple[Doubt, ...]:
-    grouped = any(d.kind == "group" for d in package.manifest.dependencies)
-    if grouped or view.blind(package) or name in view.may_bring(package):
+    if is_grouped(package) or view.blind(package) or name in view.may_bring(package):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)
     return () if sure else (Doubt.CONDITIONAL,)

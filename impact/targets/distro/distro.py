@@ -127,13 +127,8 @@ class DistroTarget(Target):
         return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
 
     def identity(self) -> str:
-        stamp = snapshots.data_stamp()
-        return repr(
-            (
-                self._asked, self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules,
-                stamp,
-            )  # fmt: skip
-        )
+        known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
+        return repr((self._asked, *known, snapshots.data_stamp()))
 
     def changed(
         self,
