@@ -144,10 +144,10 @@ def _render(rule: Rule, by_target: Sequence[tuple[str, Diagnostic]]) -> tuple[st
 
 def _join(texts: Mapping[str, list[str]]) -> str:
     """One text of those of several kinds, each with its targets where they differ."""
-    told = {text: names for text, names in texts.items() if text}
-    if len(told) <= 1:
-        return next(iter(told), "")
-    return "; ".join(attributed(text, names) for text, names in told.items())
+    rendered = {text: names for text, names in texts.items() if text}
+    if len(rendered) <= 1:
+        return next(iter(rendered), "")
+    return "; ".join(attributed(text, names) for text, names in rendered.items())
 
 
 def _sort_key(finding: Finding) -> tuple:

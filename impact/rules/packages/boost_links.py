@@ -1,6 +1,5 @@
 """Headers of compiled Boost libraries in targets that are not linked to the component."""
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -11,7 +10,7 @@ from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF
 from ..rule import Diagnostic
 from ..severity import Doubt
 from ..text import Text
-from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, stem_of
+from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, Exported, linked_packages, list_linked, stem_of
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
 TEXTS = {
@@ -84,7 +83,7 @@ def _find_given(view: View, package, targets, name: str, asked) -> _Given | None
             components |= asked.get("Boost", set())
         elif "boost_" in low:
             components |= {c for c in BOOST_COMPILED if f"boost_{c}" in low}
-        elif match := _VARIABLE.match(item):
+        elif match := PACKAGE_VARIABLE.match(item):
             packages.add(match.group(1))
         elif "$" in item:
             return None
@@ -106,7 +105,6 @@ def _find_given(view: View, package, targets, name: str, asked) -> _Given | None
     return _Given(frozenset(components), frozenset(linked), more)
 
 
-_VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPORTED_TARGETS)\}\Z")
 # CMake packages whose libraries come with several of Boost's.
 _BRING_BOOST = frozenset({"PCL", "gazebo", "ompl", "Gazebo", "rosbag2_cpp"})
 

@@ -19,6 +19,9 @@ BRING_NOTHING = frozenset(
     ]
 )  # fmt: skip
 
+PACKAGE_VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPORTED_TARGETS)\}\Z")
+"""A variable that names what is linked of a package."""
+
 
 class Exported:
     """What catkin packages hand on to whoever links them."""

@@ -1,7 +1,6 @@
 """Programs that use a compiled library and are not linked to it: of OpenCV by what they call, of others by what another
 target of the package links for the same headers."""
 
-import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
@@ -12,7 +11,7 @@ from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..rule import Diagnostic
 from ..severity import Doubt
 from ..text import Text
-from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, plain, stem_of
+from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, Exported, linked_packages, list_linked, plain, stem_of
 
 TEXTS = {
     "elsewhere": Text(
@@ -42,7 +41,6 @@ _PARTLY_COMPILED = (
     ("GeographicLib/", "geographiclib"), ("assimp/", "assimp"), ("glog/", "glog"), ("ceres/", "ceres"),
     ("SDL2/", "sdl2"),
 )  # fmt: skip
-_VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPORTED_TARGETS)\}\Z")
 
 
 def list_linked_elsewhere(view: View, package) -> Iterator[Diagnostic]:
@@ -69,7 +67,7 @@ def list_linked_elsewhere(view: View, package) -> Iterator[Diagnostic]:
                 c for c in target.conditions if "TESTING" not in c.text
             ):
                 continue
-            if any("$" in item and not _VARIABLE.match(item) for item in items):
+            if any("$" in item and not PACKAGE_VARIABLE.match(item) for item in items):
                 continue
             seen.add(word)
             subject = root.partition("/")[0].removesuffix(".h")
