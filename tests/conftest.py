@@ -8,7 +8,6 @@ import shutil
 import signal
 import struct
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
@@ -33,12 +32,6 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(200_000, 20, 100)
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files of few tests come first: those are the long ones, and with -n no worker is left alone with them."""
-    count = Counter(item.path for item in items)
-    items.sort(key=lambda item: count[item.path])
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
