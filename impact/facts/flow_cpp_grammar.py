@@ -53,20 +53,14 @@ OPTIONAL_PARAMETER = kind("optional_parameter_declaration")
 VARIADIC_PARAMETER = kind("variadic_parameter_declaration")
 PARAMETERS = kind("parameter_list")
 COMPOUND = kind("compound_statement")
-STORAGE = kind("storage_class_specifier")
 TYPE_QUALIFIER = kind("type_qualifier")
 CAPTURES = kind("lambda_capture_specifier")
 CAPTURE_INITIALIZER = kind("lambda_capture_initializer")
 LISTS = (ARGUMENTS, BRACES)
 ERROR = LANGUAGE.id_for_node_kind("ERROR", True) or 65535
-TYPE_FIELD = LANGUAGE.field_id_for_name("type")
-BODY_FIELD = LANGUAGE.field_id_for_name("body")
 
 DECLARED_TYPES = frozenset(
     kind(name) for name in ("class_specifier", "struct_specifier", "union_specifier", "enum_specifier")
-)
-PUNCTUATION = frozenset(
-    (kind("(", False), kind(")", False), kind("{", False), kind("}", False), kind(",", False), COMMENT)
 )
 NAMES = frozenset(
     kind(name)
@@ -76,7 +70,6 @@ NAMES = frozenset(
     )
 )  # fmt: skip
 
-BRACKETS = (kind("[", False), kind("]", False))
 EQUALS = kind("=", False)
 RVALUE = kind("&&", False)
 TRAILING_RETURN = kind("trailing_return_type")

@@ -72,7 +72,6 @@ _USING = kind("using_declaration")
 _SPACE_ALIAS = kind("namespace_alias_definition")
 _LINKAGE = kind("linkage_specification")
 _DECLARATIONS = kind("declaration_list")
-_FIELDS = kind("field_declaration_list")
 _UNIT = kind("translation_unit")
 _PREPROCESSOR = frozenset(
     kind(name) for name in ("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
