@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..edges.files import write_file
-from ..impact.facts import surface_cpp
+from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, offered
 from ..impact.targets.changes import all_rows, all_uses
 from ..impact.targets.platform import CODENAMES

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..impact.facts import surface_cpp
+from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import HeaderSurface
 from ..impact.targets.version import at_least, parts
 from .history import _tree

@@ -17,7 +17,7 @@ from ...edges.files import read_file, read_start, too_large
 from ...edges.limits import limits
 from ...impact.facts import interface as interfaces
 from ...impact.facts import manifest as manifests
-from ...impact.facts import surface_cpp
+from ...impact.facts.cpp import surface as surface_cpp
 from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.launch import flow as flow_launch
 from ...impact.facts.python import surface as surface_python

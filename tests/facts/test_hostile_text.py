@@ -8,7 +8,7 @@ import sys
 import pytest
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.allow import allows
-from rosimpact.impact.facts.flow_cpp_clean import Region, Regions, cleaned
+from rosimpact.impact.facts.cpp.flow_clean import Region, Regions, cleaned
 from rosimpact.impact.facts.markup import text_encoding
 from rosimpact.impact.facts.parameters import _cpp_value
 from rosimpact.impact.facts.setup import ENTRY_POINT

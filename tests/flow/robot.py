@@ -2,7 +2,7 @@
 
 from textwrap import dedent
 
-from rosimpact.impact.facts import flow_cpp
+from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
 from rosimpact.impact.model.flow.nodes import Built

@@ -1,7 +1,7 @@
 """What a package says of publishing, state after state: what is kept of the state before changes nothing."""
 
 import pytest
-from rosimpact.impact.facts import flow_cpp
+from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.logic.history import File, State
 from rosimpact.impact.logic.statements import Before, Digest, digest
 

@@ -3,7 +3,7 @@
 import pytest
 from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import Code
-from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import Known, Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type

@@ -7,7 +7,7 @@ from rosimpact.databuild.includes import Header as Read
 from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table, default, machine_of, offered
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.includes import compiled

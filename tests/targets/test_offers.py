@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.python.surface import extract as module
-from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_cpp import availability_of_use

@@ -5,7 +5,7 @@ from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.clones import VersionError
 from rosimpact.databuild.surface.stored_versions import StoredVersions
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.targets.surface.store import Surfaces

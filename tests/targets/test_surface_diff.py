@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.surface_cpp import extract
+from rosimpact.impact.facts.cpp.surface import extract
 from rosimpact.impact.targets.surface.diff import compare
 
 

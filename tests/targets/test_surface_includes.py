@@ -5,8 +5,8 @@ from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import Include
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
-from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.includes import compiled, unpack

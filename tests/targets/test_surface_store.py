@@ -6,9 +6,9 @@ import zstandard
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp import Include
+from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.python.surface import extract as module
-from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.targets.surface.includes import compiled
 from rosimpact.impact.targets.surface.store import History, StoredSurfacesError, Surfaces

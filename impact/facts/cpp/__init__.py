@@ -1,4 +1,5 @@
-"""C++: the first look at a file (lexical.py), and a closer one at its syntax where somebody asks (code.py)."""
+"""C++: what every check reads of a file (lexical.py), and its syntax where somebody asks: for names and types in use
+(code.py), for what a header offers (surface.py), and for the flow of messages (flow.py)."""
 
 from .lexical import (
     EXPORTING,

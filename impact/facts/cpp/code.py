@@ -14,8 +14,8 @@ from functools import cached_property, lru_cache
 from tree_sitter import Node, Parser
 
 from ..condition import Condition
-from ..flow_cpp_clean import cleaned, cleaned_further
-from ..flow_cpp_grammar import (
+from .flow_clean import cleaned, cleaned_further
+from .flow_grammar import (
     ARGUMENTS,
     BRACES,
     CALL,

@@ -4,7 +4,7 @@ from pathlib import Path
 from textwrap import dedent
 
 from rosimpact.impact.analysis.session import open_tree
-from rosimpact.impact.facts import flow_cpp
+from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.facts.python import flow as flow_python
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.defined import Defined

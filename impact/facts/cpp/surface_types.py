@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
-from .surface import Argument
+from ..surface import Argument
 
 TOKEN = re.compile(
     r"[^\W\d]\w*|\.?\d(?:[eEpP][+-]|[\w.'])*"

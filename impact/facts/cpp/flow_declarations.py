@@ -6,8 +6,8 @@ from bisect import bisect_right
 
 from tree_sitter import Node
 
-from .flow import Assignment, Call, Expr, Function, Parameter
-from .flow_cpp_grammar import (
+from ..flow import Assignment, Call, Expr, Function, Parameter
+from .flow_grammar import (
     ABSTRACT_FUNCTION,
     ARGUMENTS,
     BINDING,
@@ -37,7 +37,7 @@ from .flow_cpp_grammar import (
     grammatical,
     listed_in,
 )
-from .flow_cpp_values import READ, VALUES, Position, Values, bare, flat
+from .flow_values import READ, VALUES, Position, Values, bare, flat
 
 
 class Declarations(Values):

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from .cpp import Scan, includes_of, scan
-from .surface import Entity, HeaderSurface
-from .surface_cpp_declarations import (
+from ..surface import Entity, HeaderSurface
+from . import Scan, includes_of, scan
+from .surface_declarations import (
     ClassHead,
     Declared,
     Head,
@@ -25,16 +25,10 @@ from .surface_cpp_declarations import (
     names_variables,
     without_deprecation,
 )
-from .surface_cpp_directives import HIDDEN, conditions_at, warning_of, without_directives
-from .surface_cpp_enums import enumerators
-from .surface_cpp_macros import DECLARES, expansion
-from .surface_cpp_types import (
-    closed,
-    joined,
-    split,
-    tokens_of,
-    type_text,
-)
+from .surface_directives import HIDDEN, conditions_at, warning_of, without_directives
+from .surface_enums import enumerators
+from .surface_macros import DECLARES, expansion
+from .surface_types import closed, joined, split, tokens_of, type_text
 
 
 class _Scope(NamedTuple):

@@ -9,7 +9,7 @@ from itertools import accumulate, count, pairwise
 from operator import add
 from typing import NamedTuple
 
-from .cpp import scan, text_of
+from . import scan, text_of
 
 
 class Region(NamedTuple):

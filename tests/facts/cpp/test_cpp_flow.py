@@ -6,8 +6,8 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.facts.cpp.flow import extract
 from rosimpact.impact.facts.flow import Expr, FlowFile
-from rosimpact.impact.facts.flow_cpp import extract
 
 
 def said(expr: Expr | None) -> str:

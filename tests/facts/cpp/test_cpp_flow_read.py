@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.facts.flow_cpp import extract
+from rosimpact.impact.facts.cpp.flow import extract
 
 DATA = Path(__file__).parent / "data"
 RIGHT_AT_LEAST = 39 / 40

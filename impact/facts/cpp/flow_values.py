@@ -17,9 +17,9 @@ from typing import Any
 
 from tree_sitter import Node
 
-from .flow import Access, Assignment, Call, Expr, Function, Guard
-from .flow_cpp_clean import Cleaned, Regions
-from .flow_cpp_grammar import (
+from ..flow import Access, Assignment, Call, Expr, Function, Guard
+from .flow_clean import Cleaned, Regions
+from .flow_grammar import (
     ARGUMENTS,
     BINARY,
     BINDS,

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 from tree_sitter import Node
 
-from .flow import Assignment, Expr
-from .flow_cpp_declarations import Declarations
-from .flow_cpp_grammar import (
+from ..flow import Assignment, Expr
+from .flow_declarations import Declarations
+from .flow_grammar import (
     ASSERTS,
     CALL,
     COMMENT,
@@ -31,7 +31,7 @@ from .flow_cpp_grammar import (
     kind,
     listed_in,
 )
-from .flow_cpp_values import ESCAPE, READ, RETURN, VALUES, flat
+from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
 class Condition(NamedTuple):

@@ -6,10 +6,10 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator
 
-from .condition import Condition
-from .cpp import Scan
-from .surface import Argument, Entity
-from .surface_cpp_types import arguments_of, tokens_of
+from ..condition import Condition
+from ..surface import Argument, Entity
+from . import Scan
+from .surface_types import arguments_of, tokens_of
 
 HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
 """Comments and literals."""

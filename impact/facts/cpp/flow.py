@@ -14,10 +14,11 @@ from bisect import bisect_right
 
 from tree_sitter import Node, Parser
 
-from .cpp import EXPORTING, exports_of, scan
-from .flow import Alias, Assignment, Class, Expr, FlowFile, Member
-from .flow_cpp_clean import Cleaned, cleaned, cleaned_further
-from .flow_cpp_grammar import (
+from ..flow import Alias, Assignment, Class, Expr, FlowFile, Member
+from ..place import Problem
+from . import EXPORTING, exports_of, scan
+from .flow_clean import Cleaned, cleaned, cleaned_further
+from .flow_grammar import (
     ARGUMENTS,
     BRACES,
     COMPOUND,
@@ -39,9 +40,8 @@ from .flow_cpp_grammar import (
     kind,
     listed_in,
 )
-from .flow_cpp_statements import FIELD_INITIALIZERS, PREPROC, Statements
-from .flow_cpp_values import READ, bare, flat
-from .place import Problem
+from .flow_statements import FIELD_INITIALIZERS, PREPROC, Statements
+from .flow_values import READ, bare, flat
 
 PARSER = Parser(LANGUAGE)
 INCLUDED = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]", re.MULTILINE)

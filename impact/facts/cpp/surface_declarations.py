@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .surface import Argument, Base, TemplateParameter
-from .surface_cpp_types import (
+from ..surface import Argument, Base, TemplateParameter
+from .surface_types import (
     ASIDE,
     ATTRIBUTE_WORDS,
     BUILTIN,

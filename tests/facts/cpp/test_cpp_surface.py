@@ -3,10 +3,10 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rosimpact.impact.facts.cpp.surface import extract
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode
 from rosimpact.impact.facts.kinds import extract as facts_of
 from rosimpact.impact.facts.surface import Entity, plain
-from rosimpact.impact.facts.surface_cpp import extract
 
 
 def offered(text: str) -> list[Entity]:
