@@ -16,6 +16,7 @@ from rosimpact.impact.analysis.findings import (
     fails,
     format_baseline,
     glob_matches,
+    lower_repeats,
     mark_new,
     merge_diagnostics,
     prune_baseline,
@@ -28,6 +29,7 @@ from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, groups
+from rosimpact.impact.rules.severity import Doubt, Together
 from rosimpact.impact.rules.text import Text
 from rosimpact.impact.targets.evidence import Evidence
 
@@ -163,6 +165,26 @@ def test_fingerprints_differ_with_what_they_identify(change):
     assert first.fingerprint != second.fingerprint
 
 
+def test_repeats_are_notes():
+    few, once = Together("late", 2), Together("late", everywhere=True)
+    late, plain = (Doubt.LATE,), (Doubt.EXAMPLE,)
+    given = [
+        ("p", few, late), ("q", few, late), ("p", few, plain), ("p", few, late), ("p", few, ()), ("p", few, late),
+        ("p", Together("other"), late), ("p", once, late), ("q", once, late), ("q", None, late), ("q", None, late),
+    ]  # fmt: skip
+    diagnostics = [
+        ("removed-header", hit(line=line, doubts=doubts, together=together)._replace(package=package))
+        for line, (package, together, doubts) in enumerate(given)
+    ]
+    lowered = lower_repeats(diagnostics, RULES)
+    severities = [RULES[name].severity_of(diagnostic) for name, diagnostic in lowered]
+    assert severities == [
+        "warning", "warning", "note", "warning", "error", "note", "warning", "warning", "note", "warning", "warning"
+    ]  # fmt: skip
+    found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
+    assert [each.line for each in found if each.repeated] == [5, 8]
+
+
 def test_a_fingerprint_does_not_depend_on_message_or_targets():
     (first,) = merged(("removed-header", "", hit()))
     (second,) = merged(("removed-header", "jazzy", hit("gone in 0.36")))
@@ -193,6 +215,9 @@ COMPARED = [
     ([finding(targets=("humble", "jazzy"))], [finding()], [True]),
     ([finding()], [finding(targets=("humble", "jazzy"))], [False]),
     ([finding(subject="y", mark="2")], [finding()], [True]),
+    # it was a note since another place was the warning, which is mended now
+    ([finding(severity="warning")], [finding(severity="note")._replace(repeated=True)], [False]),
+    ([finding()], [finding(severity="note")._replace(repeated=True)], [True]),
 ]
 
 

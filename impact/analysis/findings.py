@@ -13,6 +13,7 @@ from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
 from ..facts.place import Allow
 from ..rules.rule import SEVERITIES, Cure, Diagnostic, Finding, Rule
+from ..rules.severity import Doubt
 from ..rules.text import Value, attributed
 
 if TYPE_CHECKING:
@@ -43,6 +44,22 @@ class SettingsError(UserError, ValueError):
 
 def _never(fix: tuple[Cure, ...], target: str) -> bool:
     return False
+
+
+def lower_repeats(yielded: Iterable[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
+    """What rules yield on one target, in order, with notes for the warnings that Together allows no more of."""
+    count: Counter[tuple[str, str, str]] = Counter()
+    result = []
+    for name, diagnostic in yielded:
+        together = diagnostic.together
+        if together is not None and rules[name].severity_of(diagnostic) == "warning":
+            key = name, "" if together.everywhere else diagnostic.package, together.kind
+            count[key] += 1
+            if count[key] > together.most:
+                doubts = (*diagnostic.doubts, Doubt.REPEATED)
+                diagnostic = diagnostic._replace(doubts=doubts)
+        result.append((name, diagnostic))
+    return result
 
 
 def merge_diagnostics(
@@ -126,6 +143,7 @@ def _finding(
         help=help,
         fix=first.fix if right else (),
         evidence=next((each.evidence for each in diagnostics if each.evidence is not None), None),
+        repeated=all(Doubt.REPEATED in each.doubts for each in diagnostics),
     )
 
 
@@ -218,7 +236,8 @@ def mark_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Findi
 
 
 def _covers(old: Finding, finding: Finding) -> bool:
-    return rank(old.severity) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
+    worth = "warning" if old.repeated else old.severity
+    return rank(worth) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
 
 
 def choose_rules(

@@ -12,6 +12,7 @@ from ...edges.console import unforeseen
 from ..rules.rule import Diagnostic, Rule, Scope
 from ..targets.snapshot import SnapshotError
 from . import result_cache
+from .findings import lower_repeats
 
 if TYPE_CHECKING:
     from ..model.workspace import Workspace
@@ -79,7 +80,7 @@ def _run_on_targets(
             found[view.target.name] = known
     for place, yielded in _run_in_parts(opened, rules, fresh, crashed, jobs or processes.cores()):
         view = opened.views[place]
-        found[view.target.name] = yielded
+        found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})
         if not crashed:
             result_cache.store_results(opened.store, view, names, yielded)
     return found

@@ -40,7 +40,7 @@ from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence import Evidence
 from .fix_actions import Declare, Insert, Remove, Replace
-from .severity import Doubt, severity
+from .severity import Doubt, Together, severity
 from .text import Text, Value
 
 SEVERITIES = ("note", "warning", "error")
@@ -67,9 +67,9 @@ class Diagnostic(NamedTuple):
     a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
     of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity, as
     severity() takes it.
-    severity: where the policy was asked already; else empty. fix: actions that repair it, see fix_actions.py; kept only
-    when every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds
-    how each target stands to it.
+    severity: where the policy was asked already; else empty. together: with which others it is worth few warnings.
+    fix: actions that repair it, see fix_actions.py; kept only when every target asked for yields the same. evidence:
+    the change that it rests on, without targets; check.py adds how each target stands to it.
     """
 
     at: Any
@@ -81,6 +81,7 @@ class Diagnostic(NamedTuple):
     severity: str = ""
     fix: tuple[Cure, ...] = ()
     evidence: Evidence | None = None
+    together: Together | None = None
 
     @property
     def fact(self) -> object:
@@ -94,7 +95,7 @@ class Diagnostic(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A finding as reported, see docs/findings.md."""
+    """A finding as reported, see docs/findings.md. repeated: it is a note only since another one is the warning."""
 
     rule: str
     severity: str
@@ -110,6 +111,7 @@ class Finding(NamedTuple):
     fingerprint: str = ""
     fix: tuple[Cure, ...] = ()
     evidence: Evidence | None = None
+    repeated: bool = False
 
 
 class Rule(NamedTuple):

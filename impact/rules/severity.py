@@ -6,14 +6,15 @@ rule therefore states what it knows of the place and of its evidence, and never 
 
     severity(*doubts_of_place(view, use.role, use.conditions), found.sure or Doubt.INCOMPLETE)
 
-Where a package has many findings of one kind that are worth one warning together (what is upcoming, what is passed on
-to others), Repeats lets the first ones speak and lowers the rest to notes.
+Findings of one kind that are worth one warning together (what is upcoming, what is passed on to others) name it as
+Together; the first ones stay warnings and the rest become notes, when the findings of all packages are known.
 """
 
 from __future__ import annotations
 
 import enum
-from collections.abc import Hashable, Iterable
+from collections.abc import Iterable
+from typing import NamedTuple
 
 from ..facts.condition import Condition
 from ..model.view import View
@@ -42,7 +43,7 @@ class Doubt(enum.Enum):
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
     CHANGED = "it is built and runs, and does something else", "note"
     DEPRECATED = "it is there, and produces a warning", "note"
-    REPEATED = "the package has been warned of the same already", "note"
+    REPEATED = "a warning says the same of another place already", "note"
 
     def __init__(self, reason: str, allows: str):
         self.reason, self.allows = reason, allows
@@ -89,20 +90,12 @@ EXPORTED = 3
 """How many things that a package does not hand on to dependants are worth a warning."""
 
 
-class Repeats:
-    """Lowers what a package has been warned of already. One for each run of a rule, or for each package of it.
+class Together(NamedTuple):
+    """What findings share that are worth only a few warnings together: lower_repeats() makes notes of the rest.
 
-    most: how many findings of one kind are worth a warning."""
+    kind: of the findings, within their rule. most: how many are worth a warning. everywhere: those of the whole
+    workspace count, and not those of one package."""
 
-    def __init__(self, most: int = 1):
-        self._most = most
-        self._count: dict[Hashable, int] = {}
-
-    def severity(self, kind: Hashable, *doubts: Doubt | bool | None) -> str:
-        """As severity() has it, but for warnings after the first ones of a kind, which become notes. Findings are to be
-        given in the order in which they are to be read."""
-        plain = severity(*doubts)
-        if plain != "warning":
-            return plain
-        self._count[kind] = self._count.get(kind, 0) + 1
-        return plain if self._count[kind] <= self._most else severity(Doubt.REPEATED)
+    kind: str
+    most: int = 1
+    everywhere: bool = False

@@ -2,7 +2,8 @@
 
 What goes with the next sync breaks in the build farm already, and counts as if it were gone. What goes with a later
 update, or on the newest platform, is worth one warning for each thing that changes (a package or library, or a header
-of it): its first place by what breaks first. The rest are notes, and so is what only a distro further ahead lacks.
+of it), in the whole workspace: its first place by what breaks first. The rest are notes, and so is what only a distro
+further ahead lacks.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 from ..targets.symbol import Horizon
 from .rule import Diagnostic
-from .severity import Doubt, Repeats, severity
+from .severity import Doubt, Together
 
 
 class Upcoming(NamedTuple):
@@ -26,23 +27,19 @@ class Upcoming(NamedTuple):
 
 
 def rate_upcoming(found: Iterable[Diagnostic | Upcoming]) -> Iterator[Diagnostic]:
-    """The diagnostics of one package, those of what is upcoming last and with their severities."""
+    """The diagnostics of one package, those of what is upcoming last, what breaks first before the others."""
     every: list[Upcoming] = []
     for one in found:
         if isinstance(one, Upcoming):
             every.append(one)
         else:
             yield one
-    repeats = Repeats()
-    severities: dict[int, str] = {}
-    for number, one in sorted(enumerate(every), key=lambda entry: (entry[1].order, entry[0])):
-        doubts = one.diagnostic.doubts
-        if one.horizon.soon:
-            severities[number] = severity(*doubts)
-        else:
-            late = Doubt.FAR if one.horizon.far else Doubt.UPCOMING
-            severities[number] = repeats.severity(one.changed, *doubts, late)
-    for number, one in enumerate(every):
-        evidence = one.diagnostic.evidence
-        evidence = evidence._replace(ahead=True) if evidence is not None else None
-        yield one.diagnostic._replace(severity=severities[number], evidence=evidence)
+    for diagnostic, changed, horizon, _ in sorted(every, key=lambda one: one.order):
+        evidence = diagnostic.evidence
+        diagnostic = diagnostic._replace(evidence=evidence and evidence._replace(ahead=True))
+        if not horizon.soon:
+            late = Doubt.FAR if horizon.far else Doubt.UPCOMING
+            diagnostic = diagnostic._replace(
+                doubts=(*diagnostic.doubts, late), together=Together(changed, everywhere=True)
+            )
+        yield diagnostic

@@ -5,7 +5,7 @@ from typing import cast
 import pytest
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.view import View
-from rosimpact.impact.rules.severity import Doubt, Repeats, doubts_of_place, severity
+from rosimpact.impact.rules.severity import Doubt, doubts_of_place, severity
 
 
 @pytest.mark.parametrize(
@@ -61,17 +61,3 @@ _IF = Condition("cpp", "X_VERSION > 3")
 )
 def test_doubts_of_a_place(ros, role, conditions, expected):
     assert doubts_of_place(cast(View, _Place(ros)), role, conditions) == expected
-
-
-def test_the_first_of_a_kind_speaks():
-    repeats = Repeats()
-    given = [
-        repeats.severity("opencv", Doubt.EXAMPLE),
-        repeats.severity("opencv", Doubt.UPCOMING),
-        repeats.severity("opencv", Doubt.UPCOMING),
-        repeats.severity("boost", Doubt.UPCOMING),
-    ]
-    assert given == ["note", "warning", "note", "warning"]
-    twice = Repeats(2)
-    assert [twice.severity("x", Doubt.LATE) for _ in range(3)] == ["warning", "warning", "note"]
-    assert [twice.severity("y") for _ in range(3)] == ["error"] * 3

@@ -1,7 +1,8 @@
 """What is there and will be gone: which places are warnings."""
 
+from rosimpact.impact.analysis.findings import lower_repeats
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic
+from rosimpact.impact.rules.rule import Diagnostic, Rule
 from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.upcoming import Upcoming, rate_upcoming
 from rosimpact.impact.targets.distro.distro import DistroTarget
@@ -16,8 +17,13 @@ def one(line, changed="opencv", horizon=NEWEST, doubts=(), order=()):
     return Upcoming(Diagnostic(At("a.cpp", line), f"x{line}", doubts=doubts), changed, horizon, order or (line,))
 
 
-def severities(*upcoming):
-    return [one.severity for one in rate_upcoming(upcoming)]
+def severities(*upcoming, packages=("dock",)):
+    """Severities in the order of lines, of a rule whose findings are errors, in packages that have the same."""
+    rule = Rule("r", "f", "error", lambda: iter(()))
+    yielded = [("r", each._replace(package=name)) for name in packages for each in rate_upcoming(upcoming)]
+    lowered = lower_repeats(yielded, {"r": rule})
+    lowered.sort(key=lambda each: (packages.index(each[1].package), each[1].at.line))
+    return [rule.severity_of(diagnostic) for _, diagnostic in lowered]
 
 
 def test_the_first_of_a_kind_is_a_warning():
@@ -26,6 +32,10 @@ def test_the_first_of_a_kind_is_a_warning():
 
 def test_what_breaks_first_is_first_and_the_order_given_stays():
     assert severities(one(1, order=(9,)), one(2, order=(3,))) == ["note", "warning"]
+
+
+def test_one_warning_is_enough_for_the_workspace():
+    assert severities(one(1), one(2, "boost"), packages=("dock", "crane")) == ["warning", "warning", "note", "note"]
 
 
 def test_a_note_does_not_take_the_place_of_a_warning():
@@ -41,4 +51,4 @@ def test_the_next_sync_counts_as_now_and_a_far_distro_as_a_note():
 
 def test_findings_with_a_severity_keep_it():
     plain = Diagnostic(At("a.cpp", 1), "x", severity="error")
-    assert [one.severity for one in rate_upcoming((plain, one(2)))] == ["error", "warning"]
+    assert severities(plain, one(2)) == ["error", "warning"]

@@ -44,7 +44,7 @@ from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Symbol
 from ...targets.target import Change
 from ..rule import Diagnostic, rule
-from ..severity import Doubt, Repeats, doubts_of_place
+from ..severity import Doubt, Together, doubts_of_place
 from ..text import Text
 from ..upcoming import Upcoming, rate_upcoming
 from .diagnosis import availability_texts, diagnose
@@ -98,7 +98,6 @@ class _Rows:
 
 
 def _list_removed(view: View, package: Package, rows: _Rows) -> Iterator[Diagnostic | Upcoming]:
-    repeats = Repeats()
     for include in package.digest.includes:
         path = include.path
         if path in rows.quiet or not view.active(include.conditions):
@@ -116,8 +115,10 @@ def _list_removed(view: View, package: Package, rows: _Rows) -> Iterator[Diagnos
         if folder is not None:
             data = {"upstream": folder.library, "version": folder.version, "replacement": folder.path}
             data["folder"] = path.partition("/")[0]
-            kind, bad = ("folder", repeats.severity(path, *doubts, Doubt.DISTURBS)) if folder.there else ("", "")
-            yield Diagnostic(include.at, path, package.name, data, kind or "other folder", doubts, bad)
+            one = Diagnostic(include.at, path, package.name, data, "other folder", doubts)
+            if folder.there:
+                one = one._replace(kind="folder", doubts=(*doubts, Doubt.DISTURBS), together=Together(path))
+            yield one
             continue
         yield from _of_release(view, package, include, rows, doubts)
 

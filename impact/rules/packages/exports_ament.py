@@ -10,7 +10,7 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.version import at_least
 from ..rule import Diagnostic
-from ..severity import EXPORTED, Doubt, Repeats
+from ..severity import EXPORTED, Doubt, Together
 from ..text import Text
 from .dependants import links_without
 from .find_targets import ONE_FOLDER
@@ -64,9 +64,8 @@ def list_unexported(view: View, package: Package) -> Iterator[Diagnostic]:
     named |= {f.name for f in package.build.handed_on}
     reach = found_with(view, named)
     seen: set[str] = set()
-    repeats = Repeats(EXPORTED)
-    yield from _passed_on(view, package, {name.lower() for name in reach}, seen, repeats)
-    yield from _included(view, package, reach, exports, seen, repeats)
+    yield from _passed_on(view, package, {name.lower() for name in reach}, seen)
+    yield from _included(view, package, reach, exports, seen)
     yield from _never_built(view, package, exports)
     yield from _without_components(view, package, exports)
     yield from _off_path(view, package, exports, reach)
@@ -100,7 +99,7 @@ _BY_TARGET = "0.9.0"
 
 
 def _passed_on(
-    view: View, package: Package, reach: set[str], seen: set[str], repeats: Repeats
+    view: View, package: Package, reach: set[str], seen: set[str]
 ) -> Iterator[Diagnostic]:
     """Packages that an exported target passes on, and that dependants are not seen to find: CMake stops at a target of
     theirs."""
@@ -118,9 +117,10 @@ def _passed_on(
                 continue
             seen.add(known.name)
             item = link.item if link.how == "link" else known.name
-            bad = repeats.severity("passed on", *_doubts_of_passed_on(view, package, target, link, known.name))
+            doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
-            yield Diagnostic(link.at, known.name, package.name, data, "link", severity=bad)
+            few = Together("passed on", EXPORTED)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
 
 
 def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
@@ -158,7 +158,7 @@ def _named_by(link) -> str:
 
 
 def _included(
-    view: View, package: Package, reach: frozenset[str], exports, seen: set[str], repeats: Repeats
+    view: View, package: Package, reach: frozenset[str], exports, seen: set[str]
 ) -> Iterator[Diagnostic]:
     """Packages that installed headers include."""
     hows = {e.how for e in exports}
@@ -176,8 +176,9 @@ def _included(
         overlaid = name in view.workspace.packages or view.target.version(name) is None
         apart = view.target.distro not in ONE_FOLDER or overlaid
         missed = apart and needed and not _comes_with_client_library(view, name)
-        bad = repeats.severity("included", Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
-        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", severity=bad)
+        doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
+        few = Together("included", EXPORTED)
+        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts, together=few)
 
 
 def _never_built(view: View, package: Package, exports) -> Iterator[Diagnostic]:

@@ -41,7 +41,7 @@ from ...model.workspace import Package
 from ..evidence import circular, name_to_declare, present
 from ..fix_actions import Declare
 from ..rule import Diagnostic, rule
-from ..severity import AT_RUN_TIME, Repeats
+from ..severity import AT_RUN_TIME, Together, severity
 from ..text import Text
 from .clean_machine import ASKED, doubts_of_chance, doubts_of_missing, is_chance
 
@@ -75,20 +75,19 @@ def undeclared_package(view: View):
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
         yield from _borrowed(view, package, borrowed)
         # A package that leaves out many things it runs with is told of the first few.
-        repeats = Repeats(AT_RUN_TIME)
         firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
         for first, name in firsts:
             doubts = doubts_of_missing(view, package, first, name)
-            kind = "run" if first.how not in (*ASKED, "include") else first
-            severity = repeats.severity(kind, *doubts)
+            at_run_time = first.how not in (*ASKED, "include")
             yield Diagnostic(
                 first.at,
                 name,
                 package.name,
                 _data(package, first),
                 kind="missing",
-                severity=severity,
-                fix=_fix(view, package, first, name) if severity != "note" else (),
+                doubts=doubts,
+                fix=_fix(view, package, first, name) if severity(*doubts) != "note" else (),
+                together=Together("run", AT_RUN_TIME) if at_run_time else None,
             )
 
 

@@ -42,7 +42,7 @@ from ...targets.providers.message_headers import package_of, type_in
 from ...targets.providers.standard import bit_of, named_by, offering, oldest
 from ..fix_actions import Insert
 from ..rule import Diagnostic, rule
-from ..severity import Doubt, Repeats, severity
+from ..severity import Doubt, Together
 from ..text import Text
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
@@ -74,7 +74,6 @@ def missing_include(view: View):
     for package in view:
         reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
         reported, year = set(), view.language(package)
-        repeats = Repeats()
         built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
         offered_to_others = {path for path, _ in package.digest.source_targets}.intersection(
@@ -116,7 +115,8 @@ def missing_include(view: View):
                 package.name,
                 data,
                 kind="dropped" if lost.once else "never",
-                severity=repeats.severity(lost.by, Doubt.UPCOMING) if sure and not now else severity(doubt),
+                doubts=(Doubt.UPCOMING if sure and not now else doubt,),
+                together=Together(lost.by, everywhere=True) if not now else None,
                 fix=_included(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
 
