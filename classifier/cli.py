@@ -103,6 +103,13 @@ def _text_of(file: Path | None) -> IO[str]:
     return io.TextIOWrapper(source, "utf-8-sig", "replace")
 
 
+def suggest_label(title: str, body: str) -> tuple[str, dict[str, float]]:
+    """The likeliest label of a report and the probability of each, by the shipped model. Raises UserError."""
+    from .triage import suggest
+
+    return suggest(title, body)
+
+
 @app.command()
 def train(
     reports: _Reports,

@@ -10,12 +10,29 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..edges.console import UserError
+
 if TYPE_CHECKING:
     from .gather_commands import Manner
+    from .labelling import Suggest
 
 app = typer.Typer(
     help="The corpus of bug reports: gather, label, count, publish.", no_args_is_help=True, rich_markup_mode=None
 )
+
+
+def _no_suggestion(title: str, body: str) -> tuple[str, dict[str, float]]:
+    raise UserError("no classifier is at hand")
+
+
+_suggest: Suggest = _no_suggestion
+
+
+def set_suggester(suggest: Suggest) -> None:
+    """What suggests labels on the labelling screen from now on. The corpus itself knows of no classifier."""
+    global _suggest
+    _suggest = suggest
+
 
 # -- gathering ---------------------------------------------------------------------------------------------------------
 
@@ -182,7 +199,7 @@ def label(
     mode = "second" if second else "disagreements" if disagreements else "first"
     raise typer.Exit(
         label_commands.label(
-            reports, labels, annotator, mode, tuple(source or ()), tuple(repository or ()), listed
+            reports, labels, annotator, mode, tuple(source or ()), tuple(repository or ()), listed, _suggest
         )
     )  # fmt: skip
 

@@ -4,27 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..edges.console import counted, escape_json, json_text, run_command, say, visible, write, write_json
 from .report import LABELS_FILE, SOURCES, CorpusError, Report, repository_of
+
+if TYPE_CHECKING:
+    from .labelling import Suggest
 
 FORMATS = ("text", "json")
 
 
 def label(
     reports: Path | None, labels: Path | None, annotator: str, mode: str, sources: Sequence[str],
-    repositories: Sequence[str], listed: bool,
+    repositories: Sequence[str], listed: bool, suggest: Suggest,
 ) -> int:  # fmt: skip
     """Opens the labelling screen, or lists what it would show. Returns the exit status."""
     return run_command(
-        lambda: _label(reports, labels, annotator, mode, sources, repositories, listed),
+        lambda: _label(reports, labels, annotator, mode, sources, repositories, listed, suggest),
         "interrupted; every answer given is saved",
     )
 
 
 def _label(
     reports: Path | None, labels: Path | None, annotator: str, mode: str, sources: Sequence[str],
-    repositories: Sequence[str], listed: bool,
+    repositories: Sequence[str], listed: bool, suggest: Suggest,
 ) -> int:  # fmt: skip
     for source in sources:
         if source not in SOURCES:
@@ -59,17 +63,6 @@ def _label(
         done, left = session.done, len(session.queue)
     say(f"{done:,} answered, {left:,} left; labels in {file}")
     return 0
-
-
-def suggest(title: str, body: str) -> tuple[str, dict[str, float]]:
-    """The classifier's likeliest label of a report, and the probability of each. Raises CorpusError."""
-    from ..classifier.model import ClassifierError
-    from ..classifier.triage import suggest as triaged
-
-    try:
-        return triaged(title, body)
-    except ClassifierError as error:
-        raise CorpusError(str(error)) from None
 
 
 def _nothing(mode: str, texts: list[Report]) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from unicodedata import category
 
@@ -20,13 +19,10 @@ from rich.table import Table
 from rich.text import Text
 
 from ..edges.console import visible_lines
-from .labelling import WHY_LIMIT, Given, Session
+from .labelling import WHY_LIMIT, Given, Session, Suggest
 from .report import KINDS, LABELS, PHASES, CorpusError, Report
 
 GUIDE_FILE = Path(__file__).parent / "GUIDE.md"
-Suggest = Callable[[str, str], tuple[str, dict[str, float]]]
-"""Title and body to the likeliest label and the probability of each."""
-
 _TITLES = {"first": "first reading", "second": "second reading, blind", "disagreements": "deciding disagreements"}
 _KEYS = (
     ("1-5", "choose"),

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import os
 import stat
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 from types import TracebackType
@@ -22,6 +22,8 @@ from ..edges.files import check_writable_path, read_file
 from ..edges.limits import limits
 from .report import CorpusError, Label, Report, faults_of, read_labels, repository_of, write_rows
 
+Suggest = Callable[[str, str], tuple[str, dict[str, float]]]
+"""Title and body to the likeliest label and the probability of each. Raises UserError."""
 MODES = ("first", "second", "disagreements")
 """first: reports without a label. second: those with one annotator. disagreements: what two left disputed."""
 DISPUTED = "disputed"

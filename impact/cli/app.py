@@ -13,11 +13,12 @@ from typing import Annotated, Any
 import typer
 
 from ...classifier.cli import app as classifier_app
-from ...classifier.cli import triage
+from ...classifier.cli import suggest_label, triage
 from ...corpus.cli import app as corpus_app
-from ...corpus.study_cli import app as study_app
+from ...corpus.cli import set_suggester
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
 from .dev import app as dev_app
+from .study import app as study_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -41,6 +42,7 @@ app.add_typer(env_app, name="env")
 app.add_typer(surface_app, name="surface")
 app.add_typer(data_app, name="data")
 app.add_typer(corpus_app, name="corpus")
+set_suggester(suggest_label)
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
 app.add_typer(study_app, name="study")

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from rosimpact.classifier import study as triage_study
 from rosimpact.classifier.evaluate import Judged
 from rosimpact.classifier.training import Example
-from rosimpact.corpus import study_triage
 from rosimpact.corpus.curves import pooled_share, survival
 from rosimpact.corpus.figures import apart, names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
@@ -153,7 +153,7 @@ def test_what_robust_counts_is_what_its_page_says():
 
 def test_the_shipped_predictions_are_of_the_committed_labels():
     labels = {label.id: (label.label, label.decided) for label in read_labels()}
-    found = study_triage.read(DATA)
+    found = triage_study.read(DATA)
     assert {one.id: (one.label, one.decided) for one in found.predictions} == labels
     assert all(abs(sum(one.probabilities) - 1) < 1e-3 for one in found.predictions)
     assert {row["id"] for row in rows_of("triage_errors_read.csv")} <= labels.keys()
@@ -165,9 +165,9 @@ def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     judged = Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
     beside = {"majority": {"macro_f1": {"value": 0.5, "low": 0.4, "high": 0.6}, "right": 1.0}}
     digests = {"labels_digest": "1", "texts_digest": "2"}
-    found = study_triage.Measured(study_triage.predictions_of([example], judged), beside, digests)
-    study_triage.write(found, tmp_path)
-    assert study_triage.read(tmp_path) == found
+    found = triage_study.Measured(triage_study.predictions_of([example], judged), beside, digests)
+    triage_study.write(found, tmp_path)
+    assert triage_study.read(tmp_path) == found
     assert "secret" not in "".join(path.read_text() for path in tmp_path.iterdir())
     (one,) = found.predictions
     assert (one.length, one.group, one.twice, one.abstained) == (26, "acme/arm", False, True)
@@ -183,19 +183,19 @@ def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     ],
 )
 def test_damaged_facts_name_the_file_and_the_cure(tmp_path, file, change, said):
-    for name in (study_triage.PREDICTIONS, study_triage.BESIDE):
+    for name in (triage_study.PREDICTIONS, triage_study.BESIDE):
         text = (DATA / name).read_text(encoding="utf-8")
         if name != file:
             (tmp_path / name).write_text(text)
         elif change:
             (tmp_path / name).write_text(text.replace(*change))
     with pytest.raises(CorpusError, match=said) as error:
-        study_triage.read(tmp_path)
+        triage_study.read(tmp_path)
     assert "rosimpact study predict" in str(error.value)
 
 
 def test_predicting_from_a_file_that_is_not_there(tmp_path, capfd):
-    assert study_triage.command(tmp_path / "none.jsonl", tmp_path / "out", quiet=True) == 2
+    assert triage_study.command(tmp_path / "none.jsonl", tmp_path / "out", quiet=True) == 2
     assert "none.jsonl" in capfd.readouterr().err
     assert not (tmp_path / "out").exists()
 

@@ -36,7 +36,7 @@ def study_run(
 
     Exit status: 0 all were made, 1 a notebook failed or made not all of its figures, 2 the tool failed.
     """
-    from . import study
+    from ...corpus import study
 
     raise typer.Exit(study.command(names or (), full, reports, output, notebooks, quiet))
 
@@ -53,7 +53,7 @@ def study_predict(
 
     Writes triage_predictions.jsonl and triage_beside.json. It takes some minutes.
     """
-    from . import study_triage
-    from .study import notebooks_here
+    from ...classifier import study
+    from ...corpus.study import notebooks_here
 
-    raise typer.Exit(study_triage.command(reports, output or notebooks_here() / "data", quiet))
+    raise typer.Exit(study.command(reports, output or notebooks_here() / "data", quiet))

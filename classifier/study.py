@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
 from ..edges.console import run_command, say
 from ..edges.documents import load_json
 from ..edges.files import read_file, write_file
 from ..edges.limits import limits
-from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
 
 if TYPE_CHECKING:
-    from ..classifier.evaluate import Judged
-    from ..classifier.training import Example
+    from .evaluate import Judged
+    from .training import Example
 
 PREDICTIONS, BESIDE = "triage_predictions.jsonl", "triage_beside.json"
 DIGITS = 5
@@ -81,9 +81,9 @@ def measured(reports: Path, progress: Callable[[str, int, int], None] | None = N
 
     reports: the file that holds the texts. It takes some minutes. Raises CorpusError.
     """
-    from ..classifier import evaluate as e
-    from ..classifier.model import ClassifierError
-    from ..classifier.training import digests, examples
+    from . import evaluate as e
+    from .model import ClassifierError
+    from .training import digests, examples
 
     try:
         found = examples(LABELS_FILE, reports, progress)
