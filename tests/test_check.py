@@ -128,3 +128,29 @@ def test_every_file_is_counted_once(tmp_path):
     (package / "mesh.stl").write_text("of no interest")
     coverage = check(tmp_path, Options(targets=("jazzy",))).coverage
     assert (coverage.packages, coverage.files, coverage.parsed) == (1, 3, 0)
+
+
+@pytest.mark.parametrize(
+    ("made", "unresolved"),
+    [
+        ("std::make_shared<rclcpp::Node>(name)", 0),
+        ("elsewhere::made(name)", 1),
+        ("static_cast<Unknown *>(handle)", 1),
+    ],
+)
+def test_members_of_what_is_not_known_are_counted(tmp_path, made, unresolved):
+    (tmp_path / "CMakeLists.txt").write_text(
+        "project(dock)\nfind_package(rclcpp REQUIRED)\nadd_executable(crane crane.cpp)\n"
+        "target_link_libraries(crane rclcpp::rclcpp)\n"
+    )
+    (tmp_path / "package.xml").write_text(
+        "<package format='3'><name>dock</name><version>1.0.0</version><depend>rclcpp</depend>"
+        "<export><build_type>ament_cmake</build_type></export></package>"
+    )
+    (tmp_path / "crane.cpp").write_text(
+        "#include <rclcpp/rclcpp.hpp>\n"
+        "rclcpp::Node::SharedPtr other;\n"
+        f'int main() {{ auto node = {made}; node->declare_parameter("speed"); node->lift(); }}\n'
+    )
+    coverage = check(tmp_path, Options(targets=("jazzy",))).coverage
+    assert coverage.unresolved.get("receiver", 0) == unresolved

@@ -355,6 +355,9 @@ def coverage(
     cmake = sum(len(package.build.unresolved) for package in workspace)
     if cmake:
         counts["cmake"] = counts.get("cmake", 0) + cmake
+    receivers = sum(package.digest.unresolved_receivers for package in workspace)
+    if receivers:
+        counts["receiver"] = receivers
     # A file can be read and still have something wrong with it, such as its name.
     files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
     parsed = len(gathered.kinds) - len(broken & gathered.kinds.keys())

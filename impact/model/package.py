@@ -238,6 +238,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python_api: tuple[PythonApiUse, ...] = ()
     # C++ names of packages outside of the workspace that only some versions have, or have so.
     cpp_api: tuple[CppApiUse, ...] = ()
+    # Members that may be such names, of objects whose type is not known.
+    unresolved_receivers: int = 0
     settings: tuple[SettingUse, ...] = ()
 
 
@@ -386,6 +388,7 @@ class _Join:
         self._known: dict[str, Known] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
+        self.unresolved_receivers = 0
 
     def inside(self, path: str) -> str:
         return path[len(self.prefix) :]
@@ -495,6 +498,7 @@ class _Join:
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
+            unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
         )
 
@@ -806,6 +810,7 @@ class _Join:
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
                                     At(path, *code.place(found.offset)), role, found.sure, found.through,
                                     found.templated, conditions + around, targets)  # fmt: skip
+            self.unresolved_receivers += len(uses.unresolved)
 
     def known(self, path: str) -> Known:
         """What a file declares and uses."""

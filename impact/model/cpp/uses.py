@@ -32,12 +32,13 @@ _TYPES = CLASSES | {"alias", "enum"}
 
 class ApiUses:
     """Uses of C++ names of other packages. heads: first parts of the paths of other packages' headers that reach the
-    file."""
+    file. unresolved: offsets of members that may be such names, of objects whose type is not known."""
 
     def __init__(self, resolver: Resolver, heads: Collection[str] = ()):
         assert resolver.vocabulary is not None
         self.resolver, self.heads = resolver, heads
         self.vocabulary = resolver.vocabulary
+        self.unresolved: set[int] = set()
 
     def found(self, words: Iterable[str]) -> Iterator[Found]:
         """Every use of a name that is looked for and whose last part is among the words."""
@@ -111,9 +112,10 @@ class ApiUses:
         if use.object.kind == "this":
             return self._of_this(use)
         type_ = self.resolver.value_of(use.object, use.place)
-        if type_ is None or type_.several or type_.pointer != use.arrow:
+        if type_ is None:
+            self.unresolved.add(use.offset)
             return None
-        return self._member(type_, use)
+        return self._member(type_, use) if not type_.several and type_.pointer == use.arrow else None
 
     def _member(self, type_: Type, use: Written) -> Found | None:
         if not type_.name:
