@@ -203,6 +203,23 @@ class Changes:
             self._known[key] = _known(package, asked) if lines else None
         return self._known[key]
 
+    def types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
+        """The types that the versions asked about (the last one stored when that is any) declare for a name, as
+        written there; empty where one of them declares it as a template, or none declares it. kinds: of Entity."""
+        found: set[str] = set()
+        for at in self._lines(package) if self._history is not None else ():
+            history = self._history(package, at) if ros in (0, at) else None
+            if history is None:
+                continue
+            asked = self._asked.of(package, at) if self._asked is not None else ((history.versions[-1], False),)
+            for version, ahead in asked:
+                for entity in history.entities(name, version) if not ahead else ():
+                    if entity.template is not None:
+                        return frozenset()
+                    if entity.kind in kinds:
+                        found.add(entity.type)
+        return frozenset(found)
+
     def _forms(self, package: str, ros: int, line: Line) -> _Forms:
         """What gives, of the events of a name of C++ in a line, how the versions that are asked about have it."""
         places: dict[int, bool] = {}
@@ -295,6 +312,9 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
     )
 
 
+_KINDS = {"function": ("method", "function"), "variable": ("field", "variable"), "alias": ("alias",)}
+
+
 class _Union(Generic[T]):
     """Several dictionaries of qualified names as one, in which the first counts. None is copied: a name is looked up in
     those that have names which begin like it. begins: the first parts of their names by dictionary, empty for those
@@ -340,6 +360,8 @@ class Vocabulary:
         self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0, home: Collection[str] = frozenset()
     ):
         self.home = home
+        self._changes, self._ros = changes, ros
+        self._types: dict[tuple[str, str, str], tuple[str, frozenset[str]]] = {}
         self._known: dict[str, Known] = {}
         self._by_last: dict[str, tuple[str, ...]] = {}
         self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
@@ -409,6 +431,21 @@ class Vocabulary:
                 between.append(self.classes.get(one) or "")
             self._members[key] = found
         return self._members[key]
+
+    def types_of(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:
+        """The class that declares a member of a class, itself or a base of it, and the member's types as written
+        there, see Changes.types(); empty ones where none does. kind: `function` for what it gives back, `variable`,
+        `alias`."""
+        key = full, last, kind
+        if key not in self._types:
+            self._types[key] = "", frozenset()
+            for one in self.line(full):
+                package = self.classes.get(one)
+                types = self._changes.types(package, self._ros, f"{one}::{last}", _KINDS[kind]) if package else None
+                if types:
+                    self._types[key] = one, types
+                    break
+        return self._types[key]
 
     def speakers_of(self, word: str) -> frozenset[str]:
         """Last parts of the classes that have a changing member of this name, and of those derived from them."""

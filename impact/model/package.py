@@ -755,7 +755,7 @@ class _Join:
             headers = [self.known(to) for to in sorted(self.reached_files(path))]
             code = self.known(path).code
             seen = set()
-            for found in MemberUses(Resolver(self.known(path), headers, None, scope)).found(words, not unknown):
+            for found in MemberUses(Resolver((self.known(path), *headers), None, scope)).found(words, not unknown):
                 around = self.macros.asked(code.conditions(found.offset) or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
@@ -799,7 +799,7 @@ class _Join:
                 continue
             code = self.known(path).code
             seen = set()
-            resolver = Resolver(self.known(path), [self.known(to) for to in reached], vocabulary, None)
+            resolver = Resolver([self.known(path), *(self.known(to) for to in reached)], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.reach(path)}
             uses = ApiUses(resolver, heads)
             for found in (*uses.found(words), *(uses.unimplemented(exported) if has_exported else ())):

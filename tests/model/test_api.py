@@ -1,9 +1,12 @@
 """Which uses of other packages' changing C++ names are found in a source file, as tables."""
 
+from collections.abc import Iterator
+
 import pytest
 from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import Code
 from rosimpact.impact.facts.cpp.surface import extract as header
+from rosimpact.impact.facts.surface import Entity, offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import Known, Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type
@@ -47,6 +50,18 @@ class Asked:
         return self._versions
 
 
+class Declared:
+    """What both versions of a package declare, as its history tells it."""
+
+    versions = ("1.0.0", "2.0.0")
+
+    def __init__(self, codes: tuple[str, str]):
+        self._of = dict(zip(self.versions, (header(code.encode()) for code in codes), strict=True))
+
+    def entities(self, name: str, version: str) -> Iterator[Entity]:
+        return (entity for entity in offered([self._of[version]]) if entity.name == name)
+
+
 def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None) -> Changes:
     """What changed from the first to the second version of packages, given the code of their headers. asked: as in
     Changes."""
@@ -62,7 +77,12 @@ def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None)
         for package in surfaces:
             lines.add(package, version, (2,), state)
     packed = lines.packed()
-    return Changes(lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {}, asked)
+    histories = {package: Declared(codes) for package, codes in packages.items()}
+    return Changes(
+        lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {},
+        asked,
+        lambda package, ros: histories.get(package),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +91,7 @@ def changes() -> Changes:
 
 
 def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
-    return Resolver(Known(Code(text.encode())), [Known(Code(one.encode())) for one in headers], vocabulary, None)
+    return Resolver([Known(Code(one.encode())) for one in (text, *headers)], vocabulary, None)
 
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
@@ -261,3 +281,52 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
 def test_the_type_of_a_parameter(parameter, type_):
     (function,) = Code(f"void f({parameter});".encode()).file.names
     assert [parameter_type(one) for one in function.parameters] == [type_]
+
+
+DRILL = "class Drill {{ public: void spin(int a{0}); }};"
+BOX = """class Box {{ public: void close({0}); std::shared_ptr<Drill> drill() const;
+std::shared_ptr<const Drill> drill(); Drill first; typedef Drill Any; template<class T> Drill pick(); std::vector<Drill> all(); {1} other(); }};
+class Chest : public Box {{}};"""
+WORKSHOP = (
+    f"namespace shop {{ {DRILL.format('')} {BOX.format('', 'Drill')} }}",
+    f"namespace shop {{ {DRILL.format(', int b')} {BOX.format('int a', 'Box')} }}",
+)
+SPIN = ["shop::Drill::spin/1"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("void g(shop::Box b) { b.drill()->spin(1); }", SPIN),
+        ("void g(shop::Box b) { auto d = b.drill(); d->spin(1); }", SPIN),
+        ("void g(shop::Box b) { b.first.spin(1); }", SPIN),
+        ("void g(shop::Box b) { b.all()[0].spin(1); for (auto & one : b.all()) one.spin(1); }", SPIN * 2),
+        ("void g() { shop::Box::Any d; d.spin(1); }", SPIN),
+        ("void g(shop::Chest b) { b.drill()->spin(1); }", SPIN),
+        # of a class of this package that has it of its base
+        ("class C : public shop::Box { void g() { drill()->spin(1); this->first.spin(1); } };", SPIN * 2),
+        ("class C : public shop::Box { void g() { first.spin(1); } };", SPIN),
+        ("class C : public shop::Box { void g(Other first) { first.spin(1); } };", []),
+        ("class C : public shop::Box, Other { void g() { drill()->spin(1); } };", []),
+        ("class C : public shop::Box { int drill(); void g() { drill()->spin(1); } };", []),
+        # a class of this package is not the one that the other package means
+        ("class Drill {}; void g(shop::Box b) { b.first.spin(1); }", SPIN),
+        # not the same in both versions, with template arguments, through the wrong operator, nobody's
+        ("void g(shop::Box b) { b.other().spin(1); b.pick<int>().spin(1); b.drill().spin(1); b.none().spin(1); }", []),
+    ],
+)
+def test_what_members_of_other_packages_are(text, found):
+    changes = changes_of({"shop": WORKSHOP}, Versions("1.0.0", "2.0.0"))
+    vocabulary = Vocabulary(["shop"], "mine", changes)
+    uses = ApiUses(resolver(text, vocabulary), {"shop"}).found(["spin"])
+    assert [f"{use.name}/{use.arguments}" for use in uses] == found
+
+
+class Versions:
+    """Several versions of every package, which targets have."""
+
+    def __init__(self, *versions: str):
+        self._versions = tuple((version, False) for version in versions)
+
+    def of(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
+        return self._versions

@@ -43,7 +43,7 @@ ROS1 = ("arm_msgs/Arm.h", "arm_msgs/Start.h", "arm_msgs/MoveAction.h")
 
 def found_in(text: str, scope: Scope, headers=(), guess=False):
     known = [Known(Code(each.encode())) for each in (text, *headers)]
-    found = MemberUses(Resolver(known[0], known[1:], None, scope)).found(sorted(scope.changing), guess)
+    found = MemberUses(Resolver(known, None, scope)).found(sorted(scope.changing), guess)
     return sorted(found, key=lambda use: use.offset)
 
 

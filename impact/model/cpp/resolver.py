@@ -7,7 +7,7 @@ offer is told by a vocabulary (model.api) and a scope of interfaces (model.membe
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -150,11 +150,11 @@ def _by_last(classes: Iterable[Class]) -> dict[str, list[Class]]:
 
 
 class Resolver:
-    """Resolves what one file writes. known: the file; headers: those of the package that it reaches."""
+    """Resolves what one file writes, with the headers of the package that it reaches. files: the file and these
+    headers, none for what stands in headers of other packages."""
 
-    def __init__(self, known: Known, headers: Collection[Known], vocabulary: Vocabulary | None, scope: Scope | None):
-        self.known = known
-        self.files = (known, *headers)
+    def __init__(self, files: Sequence[Known], vocabulary: Vocabulary | None, scope: Scope | None):
+        self.files = tuple(files)
         self.vocabulary, self.scope = vocabulary, scope
         self._types: dict[tuple[str, str, str], Type | None] = {}
         self._named: dict[tuple[str, str, str], Type | None] = {}
@@ -162,6 +162,11 @@ class Resolver:
         self._lines: dict[str, tuple[Class, ...]] = {}
         self._opened: tuple[str, ...] | None = None
         self._renamed: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def known(self) -> Known:
+        """The file itself."""
+        return self.files[0]
 
     # -- names ---------------------------------------------------------------------------------------------------------
 
@@ -307,6 +312,11 @@ class Resolver:
         if outer and _POINTED.fullmatch(last):
             inner = self.named(outer, place, depth + 1)
             return inner._replace(pointer=True) if inner is not None else None
+        if outer and self.vocabulary is not None:
+            around = next((full for full in self.meanings(outer, place) if full in self.vocabulary.classes), None)
+            inner = self._released(around, last, "alias") if around is not None else None
+            if inner is not None:
+                return inner
         shorter = _SUFFIX.sub("", name)
         if shorter and shorter != name and not shorter.endswith("::"):
             inner = self.named(shorter, place, depth + 1)
@@ -511,6 +521,9 @@ class Resolver:
             for one in self.line_of_own(place.owner):
                 if name in one.members:
                     return self._declared_type(one.members[name], _inside(one), "variable")
+            inherited = self._inherited(place.owner, name, "variable")
+            if inherited is not None:
+                return inherited
         found = [
             self.type_of(one.type, Place(one.scope, "", False))
             for file in self.files
@@ -548,17 +561,32 @@ class Resolver:
             found = self.scope.step(type_.of_interface(), name)
             return None if found is None else Type("", several=found.several, interface=found.interface,
                                                    section=found.section)  # fmt: skip
+        kind = "function" if called else "variable"
         if not type_.own:
-            return None  # what members of other packages are is not known
+            return self._released(type_.name, name, kind)
         for one in self.line_of_own(type_.name):
             if name in one.members:
-                kind = "function" if called else "variable"
                 found = self._declared_type(one.members[name], _inside(one), kind)
                 if found is None and one.template and type_.arguments:
                     written = {each.type for each in one.members[name] if each.kind == kind}
                     found = self._substituted(written, one.template, type_.arguments, place)
                 return found
-        return None
+        return self._inherited(type_.name, name, kind)
+
+    def _inherited(self, class_: str, name: str, kind: str) -> Type | None:
+        """What a member is that a class of the package has of its one base of other packages."""
+        bases = [type_ for one in self.line_of_own(class_) for _, type_ in self.bases(one)]
+        others = [type_ for type_ in bases if type_ is None or not type_.own]
+        return self._released(others[0].name, name, kind) if len(others) == 1 and others[0] is not None else None
+
+    def _released(self, class_: str, name: str, kind: str) -> Type | None:
+        """What a member of a class of other packages is, or gives back, in the versions that are asked about."""
+        if self.vocabulary is None or not class_:
+            return None
+        around, types = self.vocabulary.types_of(class_, name, kind)
+        elsewhere = Resolver((), self.vocabulary, None)
+        found = {elsewhere.type_of(each, Place(around, "", False)) for each in types}
+        return next(iter(found)) if len(found) == 1 else None
 
     def _substituted(self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: Place):
         """A type that is written with the parameters of a template."""
@@ -602,6 +630,9 @@ class Resolver:
             for one in self.line_of_own(place.owner):
                 if name in one.members:
                     return self._declared_type(one.members[name], _inside(one), "function")
+            inherited = self._inherited(place.owner, name, "function")
+            if inherited is not None:
+                return inherited
         outer, _, last = name.rpartition("::")
         if outer:
             class_ = self.named(outer, place)

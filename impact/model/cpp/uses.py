@@ -32,7 +32,8 @@ _TYPES = CLASSES | {"alias", "enum"}
 
 class ApiUses:
     """Uses of C++ names of other packages. heads: first parts of the paths of other packages' headers that reach the
-    file. unresolved: offsets of members that may be such names, of objects whose type is not known."""
+    file. unresolved: offsets of members that may be such names, of objects whose type is not known, in a file that
+    names a class which has such a member."""
 
     def __init__(self, resolver: Resolver, heads: Collection[str] = ()):
         assert resolver.vocabulary is not None
@@ -113,7 +114,8 @@ class ApiUses:
             return self._of_this(use)
         type_ = self.resolver.value_of(use.object, use.place)
         if type_ is None:
-            self.unresolved.add(use.offset)
+            if any(self.resolver.known.mentions(one) for one in self.vocabulary.speakers_of(use.word)):
+                self.unresolved.add(use.offset)
             return None
         return self._member(type_, use) if not type_.several and type_.pointer == use.arrow else None
 
