@@ -4,7 +4,9 @@ The same judgement as the benchmark's own score.py, which is given as a file; on
 repositories, so that a whole run takes minutes. Recall is also told without the records of undetectable.yaml.
 
 usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE [--known BREAKS]] [--only TEXT]
-                 [--out FILE] [--jobs N]
+                 [--accepted] [--out FILE] [--jobs N]
+
+--accepted: a record counts as found under the other names of accepted.yaml too.
 """
 
 from __future__ import annotations
@@ -63,6 +65,12 @@ def undetectable() -> frozenset[str]:
     return frozenset(record["id"] for record in listed["records"])
 
 
+def accepted() -> dict[str, list[str]]:
+    """Other names of what records are about, by their ids, from the reviewed list beside this file."""
+    listed = yaml.safe_load(pathlib.Path(__file__).with_name("accepted.yaml").read_bytes())
+    return {record["id"]: record["names"] for record in listed["records"]}
+
+
 def args_notes() -> list[str]:
     """Rules whose notes are kept in the output too, from the environment: for judging whether they deserve more."""
     return os.environ.get("NOTES_OF", "").split()
@@ -95,6 +103,7 @@ def main() -> None:
         parser.add_argument(name, required=True)
     for name in ("--breaks", "--known", "--negatives", "--only", "--out"):
         parser.add_argument(name)
+    parser.add_argument("--accepted", action="store_true")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--sample", type=int, default=0)
     args = parser.parse_args()
@@ -107,9 +116,10 @@ def main() -> None:
         ProcessPoolExecutor(args.jobs, initializer=start, initargs=setting) as pool,
     ):
         if args.breaks:
-            rows = [
-                r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"
-            ]
+            records = keep(load(args.breaks, args.sample))
+            for record in records if args.accepted else ():
+                record["accepted_names"] = [*record.get("accepted_names", ()), *accepted().get(record["id"], ())]
+            rows = [r for r in pool.map(one_break, records) if r["result"] != "no repository"]
             for label, part in (
                 ("all", rows),
                 ("tier A, hard", [r for r in rows if r["tier"] == "A" and r["hardness"] == "hard"]),
