@@ -15,6 +15,7 @@ import msgspec
 
 from .condition import Condition
 from .cpp import KEYWORDS, CppFile, scan, standing, text_of
+from .expressions import last_literals, needed_words
 
 _MEMBER = r"(?:->|\.)\s*"
 
@@ -99,6 +100,7 @@ _NOT_A_TYPE = frozenset(
         "while",
     ]
 )
+_KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
 _STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
@@ -107,7 +109,9 @@ _CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
 _PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
+_BEHIND_ARGUMENTS = re.compile(r"::(?<=[>)]::)\s*\w+\s*::")
 _OPENED = re.compile(rb"\s*\(")
+_AHEAD_OF_DECLARED = frozenset((b"", b" ", b"\t", b"\n", b":"))
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 # A type at the end of a line that begins no comment.
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
@@ -149,25 +153,30 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
-    spoken = set(facts.words.split(" "))
+    spoken = {*KEYWORDS, *facts.words.split(" ")}
     uses: list[Use] = []
     for name in facts.qualified:
-        parts = name.text.split("::")
-        spoken.update(parts)
+        parts = name.text.split("::", 2)
+        spoken.update(parts if len(parts) < 3 else name.text.split("::"))
         if parts[0] in table.heads:
             # A row about a name as it stands needs no second look at the file.
             for label, _ in patterns.get("::".join(parts[:2]), ()):
                 uses.append(Use(label, name.line, name.column, name.conditions))
+    # What follows the arguments of a template is among neither words nor names when it is qualified itself.
+    text = scan(data).visible
+    vocabulary = " ".join(spoken) if _BEHIND_ARGUMENTS.search(text) is None else text
     functions = []
-    for word in sorted(patterns.keys() & (spoken | KEYWORDS)):
+    for word in sorted(patterns.keys() & spoken):
         if word in table.called and declares(data, word):
             functions.append(word)
-        uses.extend(uses_of(data, patterns[word]))
+        uses.extend(uses_of(data, [row for row in patterns[word] if may_fit(row[1], vocabulary)]))
     return tuple(uses), tuple(functions)
 
 
 def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Use]:
     """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
+    if not rows:
+        return
     seen = set()
     for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
         key = (number, place[2])
@@ -189,7 +198,8 @@ def declares(data: bytes, function: str) -> bool:
     """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
     at the end of the line before where it begins its own."""
     for at, end in _places(function.encode(), data):
-        if _OPENED.match(data, end) is not None:
+        # Behind a blank a type may stand, behind colons a scope, and the start of a line tells nothing.
+        if data[at - 1 : at] in _AHEAD_OF_DECLARED and _OPENED.match(data, end) is not None:
             start = _line_start(data, at)
             ahead = _SCOPES.sub(b"", data[start:at])
             if not ahead and start:
@@ -242,8 +252,10 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
     for number, pattern in enumerate(patterns if places else ()):
         before = pattern.before
         if before not in fitting:
-            search = _compiled(rf"(?:{before})\Z").search
-            fitting[before] = [place for place in places if search(place[1]) is not None]
+            last = last_literals(before)
+            likely = [place for place in places if place[1].rstrip().endswith(last)] if last else places
+            search = _compiled(rf"(?:{before})\Z").search if likely else None
+            fitting[before] = [place for place in likely if search is not None and search(place[1]) is not None]
         checked = not (pattern.file or pattern.unless)
         for at, ahead in fitting[before]:
             types = _fits(pattern, text, at + len(word), ahead)
@@ -257,6 +269,19 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
             checked = True
             line, column = place_in(text, at) if scanned is None else scanned.place(at)
             yield number, (line, column, conditions, types)
+
+
+def may_fit(pattern: Pattern, vocabulary: str) -> bool:
+    """False where a file lacks a word, or a part of one, that all uses of a pattern have. vocabulary: its words."""
+    expressions = (pattern.before, pattern.template or "", pattern.after, *pattern.where.values())
+    return all(part in vocabulary for part in _needed_parts(expressions))
+
+
+@lru_cache(maxsize=4096)
+def _needed_parts(expressions: tuple[str, ...]) -> tuple[str, ...]:
+    """Parts of words in every text in which all of these are found; a kind of argument, as `<text>`, needs nothing."""
+    found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
+    return tuple(dict.fromkeys(part for parts in found for part in parts))
 
 
 def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
