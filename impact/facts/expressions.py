@@ -39,7 +39,7 @@ def last_literals(expression: str) -> tuple[str, ...]:
     return _ends(_parse(expression))
 
 
-def _parse(expression: str) -> Sequence[_Part]:
+def _parse(expression: str) -> Sequence[Any]:
     """The parts of an expression; none where it does not mind upper and lower case."""
     return [] if "(?i" in expression else [*parser.parse(expression)]
 

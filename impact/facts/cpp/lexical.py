@@ -105,6 +105,7 @@ _TIE = "\x1f"
 _SPREAD = re.compile(r"::(?:\s|(?<=\s::))")
 _AHEAD = re.compile(r"::\s+(?=\w)")
 _LONGEST_PIECE = 50_000
+_BLANK = re.compile(r"[ \n]")
 _NO_TOKEN = re.compile(r"[^\w\x00-\x7f]")
 _IN_TOKEN = re.compile(r"[\w:\x1f]")
 _ONLY_TOKENS = bytes(at if at > 127 or chr(at).isalnum() or chr(at) in "_:\x1f" else 32 for at in range(256))
@@ -397,11 +398,11 @@ def _tied(match: re.Match[str]) -> str:
 
 
 def _pieces(scanned: Scan, tied: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
-    """The segments; long ones in pieces that end with a line, since every new name is looked for from the start."""
+    """The segments; long ones in pieces, since each name is looked for from the start."""
     for start, end, conditions in scanned.segments:
-        while end - start > _LONGEST_PIECE and (line := tied.find("\n", start + _LONGEST_PIECE, end)) >= 0:
-            yield start, line, conditions
-            start = line
+        while end - start > _LONGEST_PIECE and (blank := _BLANK.search(tied, start + _LONGEST_PIECE, end)):
+            yield start, blank.start(), conditions
+            start = blank.start()
         yield start, end, conditions
 
 
