@@ -21,15 +21,18 @@ _REPEATS = (codes.MAX_REPEAT, codes.MIN_REPEAT)
 _NO_WIDTH = (codes.AT, codes.ASSERT, codes.ASSERT_NOT)
 _BLANK = [(codes.IN, [(codes.CATEGORY, codes.CATEGORY_SPACE)])]
 _WORD = re.compile(r"\w+")
-# What is shorter is in most texts, and a file's facts do not tell it.
-_SHORTEST = 4
 
 
 @lru_cache(maxsize=4096)
-def needed_words(expression: str) -> tuple[str, ...]:
-    """Words, or parts of them, in whatever a regular expression matches; those of few characters are left out."""
-    runs = (word for run in _runs(_parse(expression)) for word in _WORD.findall(run))
-    return tuple(dict.fromkeys(word for word in runs if len(word) >= _SHORTEST))
+def needed_words(expression: str, shortest: int = 4) -> tuple[tuple[str, ...], ...]:
+    """Words, or parts of them, that stand in whatever a regular expression matches: one of each tuple. shortest: the
+    least number of characters of those that are told."""
+    return tuple(dict.fromkeys(_needed(_parse(expression), shortest)))
+
+
+def has_needed(expression: str, text: str) -> bool:
+    """False where a text shows at once that an expression is not found in it."""
+    return all(any(word in text for word in words) for words in needed_words(expression, 2))
 
 
 @lru_cache(maxsize=4096)
@@ -44,23 +47,26 @@ def _parse(expression: str) -> Sequence[Any]:
     return [] if "(?i" in expression else [*parser.parse(expression)]
 
 
-def _runs(parts: Sequence[_Part]) -> Iterator[str]:
+def _needed(parts: Sequence[_Part], shortest: int) -> Iterator[tuple[str, ...]]:
     run = ""
-    for code, value in parts:
+    for code, value in [*parts, (None, None)]:
         if code is codes.LITERAL:
             run += chr(value)
             continue
         if code in _NO_WIDTH and code is not codes.ASSERT:
             continue
-        yield run
+        yield from ((word,) for word in _WORD.findall(run) if len(word) >= shortest)
         run = ""
         if code is codes.SUBPATTERN:
-            yield from _runs(value[-1])
+            yield from _needed(value[-1], shortest)
         elif code is codes.ASSERT:
-            yield from _runs(value[1])
+            yield from _needed(value[1], shortest)
         elif code in _REPEATS and value[0]:
-            yield from _runs(value[2])
-    yield run
+            yield from _needed(value[2], shortest)
+        elif code is codes.BRANCH:
+            ways = [next(_needed(way, shortest), ()) for way in value[1]]
+            if all(ways):
+                yield tuple(word for words in ways for word in words)
 
 
 def _ends(parts: Sequence[_Part]) -> tuple[str, ...]:

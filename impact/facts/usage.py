@@ -15,7 +15,7 @@ import msgspec
 
 from .condition import Condition
 from .cpp import KEYWORDS, CppFile, scan, standing, text_of
-from .expressions import last_literals, needed_words
+from .expressions import has_needed, last_literals, needed_words
 
 _MEMBER = r"(?:->|\.)\s*"
 
@@ -133,7 +133,25 @@ class Table:
         self.words = frozenset(words)
         self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
+        self._heads = tuple(f"{head}::" for head in sorted(self.heads))
+        self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
+
+
+    def likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
+        """The rows of a word without those whose uses have a word, or a part of one, that a file lacks. vocabulary: the
+        words of the file."""
+        rows = self._needed.get(word)
+        if rows is None:
+            rows = self._needed[word] = [(row, _needed_parts(row[1])) for row in self.patterns[word]]
+        return [row for row, needed in rows if all([any([part in vocabulary for part in each]) for each in needed])]
+
+    def qualified_uses(self, facts: CppFile) -> Iterator[Use]:
+        """Uses that are told by a qualified name as it stands, so that the file need not be looked at again."""
+        for name in facts.qualified:
+            if name.text.startswith(self._heads):
+                for label, _ in self.patterns.get("::".join(name.text.split("::", 2)[:2]), ()):
+                    yield Use(label, name.line, name.column, name.conditions)
 
 
 class Rows:
@@ -153,15 +171,8 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
-    spoken = {*KEYWORDS, *facts.words.split(" ")}
-    uses: list[Use] = []
-    for name in facts.qualified:
-        parts = name.text.split("::", 2)
-        spoken.update(parts if len(parts) < 3 else name.text.split("::"))
-        if parts[0] in table.heads:
-            # A row about a name as it stands needs no second look at the file.
-            for label, _ in patterns.get("::".join(parts[:2]), ()):
-                uses.append(Use(label, name.line, name.column, name.conditions))
+    spoken = {*KEYWORDS, *facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
+    uses = list(table.qualified_uses(facts))
     # What follows the arguments of a template is among neither words nor names when it is qualified itself.
     text = scan(data).visible
     vocabulary = " ".join(spoken) if _BEHIND_ARGUMENTS.search(text) is None else text
@@ -169,14 +180,14 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     for word in sorted(patterns.keys() & spoken):
         if word in table.called and declares(data, word):
             functions.append(word)
-        uses.extend(uses_of(data, [row for row in patterns[word] if may_fit(row[1], vocabulary)]))
+        rows = table.likely_rows(word, vocabulary)
+        if rows:
+            uses.extend(uses_of(data, rows))
     return tuple(uses), tuple(functions)
 
 
 def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Use]:
     """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
-    if not rows:
-        return
     seen = set()
     for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
         key = (number, place[2])
@@ -244,10 +255,14 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
     scanned = scan(data) if language == "cpp" else None
     text = scanned.visible if scanned is not None else _TEXTS[language](data)
     places: list[tuple[int, str]] = []
+    ends = [last_literals(pattern.before) for pattern in patterns]
+    lasts = tuple(last for each in ends for last in each) if all(ends) else ("",)
     for at in standing(word, text):
-        # No use reaches back over the end of the statement before it.
         far = max(0, at - _FAR)
-        places.append((at, text[max(far, text.rfind(";", far, at)) : at]))
+        ahead = text[far:at]
+        if ahead.rstrip().endswith(lasts):
+            # No use reaches back over the end of the statement before it.
+            places.append((at, ahead[max(0, ahead.rfind(";")) :]))
     fitting = {"": places}
     for number, pattern in enumerate(patterns if places else ()):
         before = pattern.before
@@ -271,15 +286,9 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
             yield number, (line, column, conditions, types)
 
 
-def may_fit(pattern: Pattern, vocabulary: str) -> bool:
-    """False where a file lacks a word, or a part of one, that all uses of a pattern have. vocabulary: its words."""
+def _needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
+    """Parts of words in every file that has a use of a pattern, one of each tuple; arguments of a kind need none."""
     expressions = (pattern.before, pattern.template or "", pattern.after, *pattern.where.values())
-    return all(part in vocabulary for part in _needed_parts(expressions))
-
-
-@lru_cache(maxsize=4096)
-def _needed_parts(expressions: tuple[str, ...]) -> tuple[str, ...]:
-    """Parts of words in every text in which all of these are found; a kind of argument, as `<text>`, needs nothing."""
     found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
     return tuple(dict.fromkeys(part for parts in found for part in parts))
 
@@ -295,7 +304,7 @@ def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
 @lru_cache(maxsize=64)
 def _stands_in(expression: str, text: str) -> bool:
     """Whether a file has what an expression looks for; many rows ask the same of it."""
-    return _compiled(expression).search(text) is not None
+    return has_needed(expression, text) and _compiled(expression).search(text) is not None
 
 
 def place_in(text: str, offset: int) -> tuple[int, int]:
@@ -456,10 +465,16 @@ def _outer(expression: str) -> str:
         expression = shorter
 
 
+_TYPE_ENDS = frozenset(" \t\n&*\v\f\x1c\x1d\x1e\x1f\x85\xa0")
 _DECLARED_AHEAD = re.compile(r"\s*[;={,)(]")
 _TYPE_OF = re.compile(r"([\w:]+|char\s*\*)(?:\s*&\s*|\s+)\Z")
 _SHARED_AHEAD = re.compile(r"\s*([;={,)(][^;]{0,60})")
 _SHARED_TYPE = re.compile(r"([\w:>]+)(\s*[&*]+\s*|\s+)\Z")
+
+
+def _ahead_of_variable(pattern: re.Pattern[str], text: str, at: int) -> re.Match[str] | None:
+    """The type before a variable, behind which a blank or mark stands."""
+    return pattern.search(text, max(0, at - _FAR), at) if text[at - 1 : at] in _TYPE_ENDS else None
 
 
 def _declared(argument: str, types: str, text: str) -> bool:
@@ -468,7 +483,7 @@ def _declared(argument: str, types: str, text: str) -> bool:
         declared = []
         for at in standing(name, text):
             if _DECLARED_AHEAD.match(text, at + len(name)):
-                found = _TYPE_OF.search(text, max(0, at - _FAR), at)
+                found = _ahead_of_variable(_TYPE_OF, text, at)
                 if found and found.group(1) not in _NOT_A_TYPE:
                     declared.append(found.group(1))
         if declared and all(re.fullmatch(types, d) for d in declared):
@@ -481,7 +496,7 @@ def _made_shared(name: str, text: str) -> bool:
     declared = []
     for at in standing(name, text):
         ahead = _SHARED_AHEAD.match(text, at + len(name))
-        found = _SHARED_TYPE.search(text, max(0, at - _FAR), at) if ahead else None
+        found = _ahead_of_variable(_SHARED_TYPE, text, at) if ahead else None
         if ahead and found and found.group(1) not in _NOT_A_TYPE:
             declared.append((found.group(1), found.group(2), ahead.group(1)))
     return bool(declared) and all(
