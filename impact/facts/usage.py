@@ -100,6 +100,7 @@ _NOT_A_TYPE = frozenset(
         "while",
     ]
 )
+_KEYWORD_TEXT = " ".join(sorted(KEYWORDS))
 _KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
@@ -125,7 +126,7 @@ class Table:
     """What to look for in C++ files: patterns with their labels, by a word that stands in each; and bare words.
 
     stamp: differs whenever another table does. heads: first parts of words that are qualified names. called: words that
-    are functions in some pattern.
+    are functions in some pattern. keywords: words that are keywords of C++.
     """
 
     def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]], words: Collection[str] = ()):
@@ -134,6 +135,7 @@ class Table:
         self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
         self._heads = tuple(f"{head}::" for head in sorted(self.heads))
+        self.keywords = sorted(KEYWORDS.intersection(patterns))
         self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
 
@@ -171,11 +173,12 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
-    spoken = {*KEYWORDS, *facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
-    uses = list(table.qualified_uses(facts))
-    # What follows the arguments of a template is among neither words nor names when it is qualified itself.
     text = scan(data).visible
-    vocabulary = " ".join(spoken) if _BEHIND_ARGUMENTS.search(text) is None else text
+    spoken = {*facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
+    # What follows the arguments of a template is among neither words nor names when it is qualified itself.
+    vocabulary = f"{_KEYWORD_TEXT} {' '.join(spoken)}" if _BEHIND_ARGUMENTS.search(text) is None else text
+    spoken.update([word for word in table.keywords if word in text])
+    uses = list(table.qualified_uses(facts))
     functions = []
     for word in sorted(patterns.keys() & spoken):
         if word in table.called and declares(data, word):

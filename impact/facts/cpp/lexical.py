@@ -9,7 +9,8 @@ import sys
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import accumulate
+from itertools import accumulate, count
+from operator import add
 from typing import NamedTuple
 
 import msgspec
@@ -142,6 +143,11 @@ def text_of(data: bytes) -> str:
     return text
 
 
+def line_starts(text: str) -> list[int]:
+    """The offset at which each line of a text begins, and that of its end."""
+    return [0, *map(add, accumulate(map(len, text.split("\n"))), count(1))]
+
+
 class _Blocks:
     """The stack of open #if blocks; gives the conditions in force."""
 
@@ -238,8 +244,7 @@ def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
     text = text_of(data)
     problems: list[Problem] = []
-    # Where each line starts, for places.
-    starts = [0, *accumulate([len(line) + 1 for line in text.split("\n")])]
+    starts = line_starts(text)
 
     def place(offset: int) -> tuple[int, int]:
         line = bisect_right(starts, offset)
