@@ -15,6 +15,7 @@ import msgspec
 
 from .condition import Condition
 from .cpp import KEYWORDS, CppFile, scan, standing, text_of
+from .expressions import has_needed, last_literals, needed_words
 
 _MEMBER = r"(?:->|\.)\s*"
 
@@ -99,6 +100,8 @@ _NOT_A_TYPE = frozenset(
         "while",
     ]
 )
+_KEYWORD_TEXT = " ".join(sorted(KEYWORDS))
+_KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
 _STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
@@ -107,7 +110,9 @@ _CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
 _PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
+_BEHIND_ARGUMENTS = re.compile(r"::(?<=[>)]::)\s*\w+\s*::")
 _OPENED = re.compile(rb"\s*\(")
+_AHEAD_OF_DECLARED = frozenset((b"", b" ", b"\t", b"\n", b":"))
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 # A type at the end of a line that begins no comment.
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
@@ -121,7 +126,7 @@ class Table:
     """What to look for in C++ files: patterns with their labels, by a word that stands in each; and bare words.
 
     stamp: differs whenever another table does. heads: first parts of words that are qualified names. called: words that
-    are functions in some pattern.
+    are functions in some pattern. keywords: words that are keywords of C++.
     """
 
     def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]], words: Collection[str] = ()):
@@ -129,7 +134,26 @@ class Table:
         self.words = frozenset(words)
         self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
+        self._heads = tuple(f"{head}::" for head in sorted(self.heads))
+        self.keywords = sorted(KEYWORDS.intersection(patterns))
+        self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
+
+
+    def likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
+        """The rows of a word without those whose uses have a word, or a part of one, that a file lacks. vocabulary: the
+        words of the file."""
+        rows = self._needed.get(word)
+        if rows is None:
+            rows = self._needed[word] = [(row, _needed_parts(row[1])) for row in self.patterns[word]]
+        return [row for row, needed in rows if all([any([part in vocabulary for part in each]) for each in needed])]
+
+    def qualified_uses(self, facts: CppFile) -> Iterator[Use]:
+        """Uses that are told by a qualified name as it stands, so that the file need not be looked at again."""
+        for name in facts.qualified:
+            if name.text.startswith(self._heads):
+                for label, _ in self.patterns.get("::".join(name.text.split("::", 2)[:2]), ()):
+                    yield Use(label, name.line, name.column, name.conditions)
 
 
 class Rows:
@@ -149,20 +173,19 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
-    spoken = set(facts.words.split(" "))
-    uses: list[Use] = []
-    for name in facts.qualified:
-        parts = name.text.split("::")
-        spoken.update(parts)
-        if parts[0] in table.heads:
-            # A row about a name as it stands needs no second look at the file.
-            for label, _ in patterns.get("::".join(parts[:2]), ()):
-                uses.append(Use(label, name.line, name.column, name.conditions))
+    text = scan(data).visible
+    spoken = {*facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
+    # What follows the arguments of a template is among neither words nor names when it is qualified itself.
+    vocabulary = f"{_KEYWORD_TEXT} {' '.join(spoken)}" if _BEHIND_ARGUMENTS.search(text) is None else text
+    spoken.update([word for word in table.keywords if word in text])
+    uses = list(table.qualified_uses(facts))
     functions = []
-    for word in sorted(patterns.keys() & (spoken | KEYWORDS)):
+    for word in sorted(patterns.keys() & spoken):
         if word in table.called and declares(data, word):
             functions.append(word)
-        uses.extend(uses_of(data, patterns[word]))
+        rows = table.likely_rows(word, vocabulary)
+        if rows:
+            uses.extend(uses_of(data, rows))
     return tuple(uses), tuple(functions)
 
 
@@ -189,7 +212,8 @@ def declares(data: bytes, function: str) -> bool:
     """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
     at the end of the line before where it begins its own."""
     for at, end in _places(function.encode(), data):
-        if _OPENED.match(data, end) is not None:
+        # Behind a blank a type may stand, behind colons a scope, and the start of a line tells nothing.
+        if data[at - 1 : at] in _AHEAD_OF_DECLARED and _OPENED.match(data, end) is not None:
             start = _line_start(data, at)
             ahead = _SCOPES.sub(b"", data[start:at])
             if not ahead and start:
@@ -234,16 +258,22 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
     scanned = scan(data) if language == "cpp" else None
     text = scanned.visible if scanned is not None else _TEXTS[language](data)
     places: list[tuple[int, str]] = []
+    ends = [last_literals(pattern.before) for pattern in patterns]
+    lasts = tuple(last for each in ends for last in each) if all(ends) else ("",)
     for at in standing(word, text):
-        # No use reaches back over the end of the statement before it.
         far = max(0, at - _FAR)
-        places.append((at, text[max(far, text.rfind(";", far, at)) : at]))
+        ahead = text[far:at]
+        if ahead.rstrip().endswith(lasts):
+            # No use reaches back over the end of the statement before it.
+            places.append((at, ahead[max(0, ahead.rfind(";")) :]))
     fitting = {"": places}
     for number, pattern in enumerate(patterns if places else ()):
         before = pattern.before
         if before not in fitting:
-            search = _compiled(rf"(?:{before})\Z").search
-            fitting[before] = [place for place in places if search(place[1]) is not None]
+            last = last_literals(before)
+            likely = [place for place in places if place[1].rstrip().endswith(last)] if last else places
+            search = _compiled(rf"(?:{before})\Z").search if likely else None
+            fitting[before] = [place for place in likely if search is not None and search(place[1]) is not None]
         checked = not (pattern.file or pattern.unless)
         for at, ahead in fitting[before]:
             types = _fits(pattern, text, at + len(word), ahead)
@@ -259,6 +289,13 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
             yield number, (line, column, conditions, types)
 
 
+def _needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
+    """Parts of words in every file that has a use of a pattern, one of each tuple; arguments of a kind need none."""
+    expressions = (pattern.before, pattern.template or "", pattern.after, *pattern.where.values())
+    found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
+    return tuple(dict.fromkeys(part for parts in found for part in parts))
+
+
 def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
     """Whether a file has what a pattern wants in it, and not what it does not."""
     whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
@@ -270,7 +307,7 @@ def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
 @lru_cache(maxsize=64)
 def _stands_in(expression: str, text: str) -> bool:
     """Whether a file has what an expression looks for; many rows ask the same of it."""
-    return _compiled(expression).search(text) is not None
+    return has_needed(expression, text) and _compiled(expression).search(text) is not None
 
 
 def place_in(text: str, offset: int) -> tuple[int, int]:
@@ -431,10 +468,16 @@ def _outer(expression: str) -> str:
         expression = shorter
 
 
+_TYPE_ENDS = frozenset(" \t\n&*\v\f\x1c\x1d\x1e\x1f\x85\xa0")
 _DECLARED_AHEAD = re.compile(r"\s*[;={,)(]")
 _TYPE_OF = re.compile(r"([\w:]+|char\s*\*)(?:\s*&\s*|\s+)\Z")
 _SHARED_AHEAD = re.compile(r"\s*([;={,)(][^;]{0,60})")
 _SHARED_TYPE = re.compile(r"([\w:>]+)(\s*[&*]+\s*|\s+)\Z")
+
+
+def _ahead_of_variable(pattern: re.Pattern[str], text: str, at: int) -> re.Match[str] | None:
+    """The type before a variable, behind which a blank or mark stands."""
+    return pattern.search(text, max(0, at - _FAR), at) if text[at - 1 : at] in _TYPE_ENDS else None
 
 
 def _declared(argument: str, types: str, text: str) -> bool:
@@ -443,7 +486,7 @@ def _declared(argument: str, types: str, text: str) -> bool:
         declared = []
         for at in standing(name, text):
             if _DECLARED_AHEAD.match(text, at + len(name)):
-                found = _TYPE_OF.search(text, max(0, at - _FAR), at)
+                found = _ahead_of_variable(_TYPE_OF, text, at)
                 if found and found.group(1) not in _NOT_A_TYPE:
                     declared.append(found.group(1))
         if declared and all(re.fullmatch(types, d) for d in declared):
@@ -456,7 +499,7 @@ def _made_shared(name: str, text: str) -> bool:
     declared = []
     for at in standing(name, text):
         ahead = _SHARED_AHEAD.match(text, at + len(name))
-        found = _SHARED_TYPE.search(text, max(0, at - _FAR), at) if ahead else None
+        found = _ahead_of_variable(_SHARED_TYPE, text, at) if ahead else None
         if ahead and found and found.group(1) not in _NOT_A_TYPE:
             declared.append((found.group(1), found.group(2), ahead.group(1)))
     return bool(declared) and all(

@@ -10,7 +10,7 @@ _WORD = re.compile(rb"[A-Za-z_]\w*")
 
 def words_of(data: bytes) -> str:
     """The distinct words of a file, those of comments and literals too, sorted and joined by blanks."""
-    return " ".join(sorted({word.decode() for word in _WORD.findall(data)}))
+    return b" ".join(sorted(set(_WORD.findall(data)))).decode()
 
 
 def mentions(name: str, words: Collection[str]) -> bool:

@@ -51,7 +51,7 @@ from .flow_grammar import (
     kind,
     listed_in,
 )
-from .lexical import Scan, scan, standing, text_of
+from .lexical import Scan, beginning_lines, scan, standing, text_of
 from .names import without_templates
 from .schema import Class, Declared, Expr, File, Local, Parameter, Place, Use
 
@@ -128,13 +128,18 @@ _TYPES = frozenset(
 )  # fmt: skip
 _TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
 # What these find in comments too does no harm: it is one more name that nobody asks for.
-_LIKE_USING = re.compile(r"^[ \t]*using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;", re.MULTILINE)
-_LIKE_OPENED = re.compile(r"^[ \t]*using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;", re.MULTILINE)
-_LIKE_ALIAS = re.compile(r"\busing\s+(\w+)[^=;]{0,200}=|\btypedef\b[^;]{0,1000}?(\w+)\s*;")
-_LIKE_CLASS = re.compile(r"\b(?:class|struct|union)\b((?:[^;{}<>=:]|::)*)")
+_LIKE_USING = re.compile(r"using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;")
+_LIKE_OPENED = re.compile(r"using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;")
+_LIKE_ALIAS = (re.compile(r"using(?<!\wusing)\s+(\w+)[^=;]{0,200}="),
+               re.compile(r"typedef(?<!\wtypedef)\b[^;]{0,1000}?(\w+)\s*;"))  # fmt: skip
+_LIKE_CLASS = [
+    re.compile(rf"{word}(?<!\w{word})\b((?:[^;{{}}<>=:]|::)*)") for word in ("class", "struct", "union")
+]
 _IDENTIFIERS = re.compile(r"[A-Za-z_]\w*")
-_LIKE_DERIVED = re.compile(rb"\b(?:class|struct)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]")
-_LIKE_SPACE = re.compile(r"^[ \t]*namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;", re.MULTILINE)
+_LIKE_DERIVED = [
+    re.compile(rb"%b(?<!\w%b)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]" % (word, word)) for word in (b"class", b"struct")
+]
+_LIKE_SPACE = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;")
 _DEEPEST = 60
 
 
@@ -216,7 +221,7 @@ class Code:
     def using(self) -> dict[str, str]:
         """Names that `using a::b;` makes known outside of functions or in them, in full, without parsing the file."""
         found = {}
-        for match in _LIKE_USING.finditer(self.text):
+        for match in beginning_lines(_LIKE_USING, self.text):
             full = "".join(match.group(1).split())
             outer, _, last = full.rpartition("::")
             if outer and outer.rpartition("::")[2] != last:  # not the constructors of a base class
@@ -226,30 +231,32 @@ class Code:
     @cached_property
     def opened(self) -> tuple[str, ...]:
         """Namespaces that `using namespace` opens, without parsing the file."""
-        return tuple(dict.fromkeys("".join(match.group(1).split()) for match in _LIKE_OPENED.finditer(self.text)))
+        found = ("".join(match.group(1).split()) for match in beginning_lines(_LIKE_OPENED, self.text))
+        return tuple(dict.fromkeys(found))
 
     @cached_property
     def spaces(self) -> dict[str, str]:
         """Other names of namespaces, without parsing the file."""
-        return {m.group(1): "".join(m.group(2).split()) for m in _LIKE_SPACE.finditer(self.text)}
+        return {m.group(1): "".join(m.group(2).split()) for m in beginning_lines(_LIKE_SPACE, self.text)}
 
     @cached_property
     def like_aliases(self) -> frozenset[str]:
         """Names that may be given to types."""
-        return frozenset(m.group(1) or m.group(2) for m in _LIKE_ALIAS.finditer(self.text))
+        return frozenset(name for pattern in _LIKE_ALIAS for name in pattern.findall(self.text))
 
     @cached_property
     def like_classes(self) -> frozenset[str]:
         """Names that may be those of classes which are defined."""
         found: set[str] = set()
-        for match in _LIKE_CLASS.finditer(self.text):
-            found.update(_IDENTIFIERS.findall(match.group(1)))
+        for pattern in _LIKE_CLASS:
+            for heads in pattern.findall(self.text):
+                found.update(_IDENTIFIERS.findall(heads))
         return frozenset(found)
 
     @cached_property
     def may_derive(self) -> bool:
         """Whether something like `class A : public B` may stand in the file."""
-        return _LIKE_DERIVED.search(self._data) is not None
+        return any(pattern.search(self._data) for pattern in _LIKE_DERIVED)
 
     def may_declare(self, word: str) -> bool:
         """Whether a word may stand behind a type and before a parenthesis."""

@@ -16,7 +16,7 @@ from tree_sitter import Node, Parser
 
 from ..flow import Alias, Assignment, Class, Expr, FlowFile, Member
 from ..place import Problem
-from . import EXPORTING, exports_of, scan
+from . import EXPORTING, beginning_lines, exports_of, scan
 from .flow_clean import Cleaned, cleaned, cleaned_further
 from .flow_grammar import (
     ARGUMENTS,
@@ -44,7 +44,7 @@ from .flow_statements import FIELD_INITIALIZERS, PREPROC, Statements
 from .flow_values import READ, bare, flat
 
 PARSER = Parser(LANGUAGE)
-INCLUDED = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]", re.MULTILINE)
+INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 
 def extract(data: bytes) -> FlowFile:
@@ -75,7 +75,7 @@ def extract(data: bytes) -> FlowFile:
         exports,
         tuple(sorted(wrong.union(source.hidden))),
         tuple(reader.problems),
-        tuple(dict.fromkeys(INCLUDED.findall(source.text))),
+        tuple(dict.fromkeys(match.group(1) for match in beginning_lines(INCLUDED, source.text))),
     )
 
 

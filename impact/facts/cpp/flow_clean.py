@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Sequence
-from itertools import accumulate, count, pairwise
-from operator import add
+from itertools import pairwise
 from typing import NamedTuple
 
-from . import scan, text_of
+from . import line_starts, scan, text_of
 
 
 class Region(NamedTuple):
@@ -45,9 +44,6 @@ class Regions:
     def _turn(self, at: int, number: int) -> None:
         self._turns.append(at)
         self._inner.append(number)
-
-    def __bool__(self) -> bool:
-        return bool(self._regions)
 
     def between(self, outside: int, inside: int) -> list[Region]:
         """Those around the place `inside` that begin behind the place `outside`, the outermost first."""
@@ -112,7 +108,7 @@ def cleaned(data: bytes) -> Cleaned:
         source = _without_visibility(source)
     if any(name in source for name in _EACH_NAMES):
         source = _each(source)
-    return Cleaned(text, source.encode(), [0, *map(add, accumulate(map(len, source.split("\n"))), count(1))])
+    return Cleaned(text, source.encode(), line_starts(text))
 
 
 def cleaned_further(data: bytes, before: Cleaned) -> Cleaned:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from tree_sitter import Node
 
 from ..flow import Assignment, Expr
+from .flow_clean import Regions
 from .flow_declarations import Declarations
 from .flow_grammar import (
     ASSERTS,
@@ -108,8 +109,8 @@ class Statements(Declarations):
         self.statement(body, guard)
 
     def statement(self, node: Node, guard: int) -> Leaving:
-        if self.regions:
-            guard = self.regional(node, guard)
+        if self.regions is not None:
+            guard = self.regional(self.regions, node, guard)
         read = STATEMENTS.get(node.kind_id)
         if read is not None:
             return read(self, node, guard)
@@ -120,13 +121,13 @@ class Statements(Declarations):
             return self.block(node, guard)
         return STAYS
 
-    def regional(self, node: Node, guard: int) -> int:
+    def regional(self, regions: Regions, node: Node, guard: int) -> int:
         """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
         start = node.start_byte
         parent = node.parent
         if parent is not None and parent.kind_id == ELSE:
             parent = parent.parent
-        for region in self.regions.between(parent.start_byte if parent is not None else -1, start):
+        for region in regions.between(parent.start_byte if parent is not None else -1, start):
             guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
 
@@ -160,13 +161,10 @@ class Statements(Declarations):
                     continue
             elif number == LABELED:
                 guard, conditions, ended, jumped = base, [], STAYS, None
-            if regions:
-                leaving = self.statement(child, guard)
-            else:
-                read = STATEMENTS.get(number)
-                leaving = self.statement(child, guard) if read is None else read(self, child, guard)
-            if regions and leaving in (JUMPS, BREAKS):
-                leaving = self.regionally(child, leaving)
+            read = STATEMENTS.get(number) if regions is None else None
+            leaving = self.statement(child, guard) if read is None else read(self, child, guard)
+            if regions is not None and leaving in (JUMPS, BREAKS):
+                leaving = self.regionally(regions, child, leaving)
             if leaving == STAYS or ended:
                 continue
             if not isinstance(leaving, tuple):
@@ -182,12 +180,12 @@ class Statements(Declarations):
         word = _WORD.search(self.text, node.start_byte, node.end_byte)
         return self.guard("never", f"after {word[0] if word else 'a jump'}", self.line(node), guard, True)
 
-    def regionally(self, node: Node, leaving: Leaving) -> Leaving:
+    def regionally(self, regions: Regions, node: Node, leaving: Leaving) -> Leaving:
         """How control leaves a jump: only where the blanked directives let it be compiled that the statements around it
         do not stand under."""
         parent = node.parent
         around = parent.start_byte if parent is not None else node.start_byte
-        inner = self.regions.between(around, node.start_byte)
+        inner = regions.between(around, node.start_byte)
         if not inner:
             return leaving
         return (Condition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS
@@ -249,7 +247,7 @@ class Statements(Declarations):
             )
             if follows is None:
                 break
-            if follows.kind_id == IF and not self.regions:
+            if follows.kind_id == IF and self.regions is None:
                 node = follows
                 continue
             last = self.statement(follows, guard)

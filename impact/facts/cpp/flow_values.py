@@ -110,7 +110,7 @@ class Values:
     def __init__(self, cleaned: Cleaned) -> None:
         self.text = cleaned.text
         self.starts = cleaned.starts
-        self.regions = Regions(cleaned.regions)
+        self.regions = Regions(cleaned.regions) if cleaned.regions else None
         self.functions: list[Function] = []
         self.nesting = 0
         self.name = ""

@@ -9,7 +9,8 @@ import sys
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import accumulate
+from itertools import accumulate, count
+from operator import add
 from typing import NamedTuple
 
 import msgspec
@@ -100,10 +101,20 @@ _DIRECTIVE = re.compile(
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _WORDS = re.compile(r"\w+(?:\s*::\s*\w+)*")
-_COLONS = re.compile(r"::")
-_VARIABLE = re.compile(r"[ \t]+\w+[ \t]*[;={]")
-_BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?")
-_TAIL = re.compile(r"\s*::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
+# White space to an expression, but not to bytes.split().
+_TIE = "\x1f"
+_SPREAD = re.compile(r"::(?:\s|(?<=\s::))")
+_AHEAD = re.compile(r"::\s+(?=\w)")
+_LONGEST_PIECE = 50_000
+_BLANK = re.compile(r"[ \n]")
+_NO_TOKEN = re.compile(r"[^\w\x00-\x7f]")
+_IN_TOKEN = re.compile(r"[\w:\x1f]")
+_ONLY_TOKENS = bytes(at if at > 127 or chr(at).isalnum() or chr(at) in "_:\x1f" else 32 for at in range(256))
+_KEYWORD_BYTES = frozenset(word.encode() for word in KEYWORDS)
+_DIGITS = frozenset("0123456789")
+_VARIABLE = re.compile(r"::\s*([^\W\d]\w*(?:::[^\W\d]\w*)*)[ \t]+\w+[ \t]*[;={]")
+_BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:([^\W\d]\w*)([ \t]*))?")
+_TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
 _MAIN = re.compile(r"main\s*\(")
@@ -130,6 +141,11 @@ def text_of(data: bytes) -> str:
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     return text
+
+
+def line_starts(text: str) -> list[int]:
+    """The offset at which each line of a text begins, and that of its end."""
+    return [0, *map(add, accumulate(map(len, text.split("\n"))), count(1))]
 
 
 class _Blocks:
@@ -228,8 +244,7 @@ def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
     text = text_of(data)
     problems: list[Problem] = []
-    # Where each line starts, for places.
-    starts = [0, *accumulate([len(line) + 1 for line in text.split("\n")])]
+    starts = line_starts(text)
 
     def place(offset: int) -> tuple[int, int]:
         line = bisect_right(starts, offset)
@@ -304,6 +319,15 @@ def scan(data: bytes) -> Scan:
     return Scan(text, visible, place, segments, found, defined, problems, ends)
 
 
+def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
+    """The matches that begin a line, blanks before them aside. An expression that says so itself is slower by far than
+    one that starts with a literal."""
+    for match in pattern.finditer(text):
+        at = match.start()
+        if not text[text.rfind("\n", 0, at) + 1 : at].strip(" \t"):
+            yield match
+
+
 def standing(name: str, text: str) -> Iterator[int]:
     """Where a name stands as a whole word."""
     at = text.find(name)
@@ -330,82 +354,132 @@ def extract(data: bytes) -> CppFile:
     Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
     """
     scanned = scan(data)
-    text, visible, place, segments = scanned.text, scanned.visible, scanned.place, scanned.segments
-    defined, problems = scanned.defined, scanned.problems
-    words: set[str] = set()
+    text, visible, place = scanned.text, scanned.visible, scanned.place
+    tied = _tie(visible)
+    words: set[bytes] = set()
     qualified: list[Name] = []
-    variables: dict[str, None] = {}
     seen: dict[tuple[Condition, ...], set[str]] = {}
-    backwards = visible[::-1]
-    length = len(visible)
-    for start, end, conditions in segments:
-        words.update(_WORDS.findall(visible, start, end))
+    for start, end, conditions in _pieces(scanned, tied):
+        piece = tied[start:end]
+        tokens = set(piece.encode().translate(_ONLY_TOKENS).split())
+        joined = [token for token in tokens if b":" in token]
+        words |= tokens
         known = seen.setdefault(conditions, set())
-        position = start
-        for colons in _COLONS.finditer(visible, start, end):
-            at = colons.start()
-            if at < position:
-                continue
-            tail = _TAIL.match(visible, at, end)
-            if tail is None:
-                position = at + 2
-                continue
-            position = tail.end()
-            head = _HEAD_BACKWARDS.match(backwards, length - at, length - start)
-            name_at = tail.start(1)
-            name = tail.group(1) + tail.group(2)
-            if head is not None:
-                spelt = head.group(1)[::-1]
-                # `return ::close(fd)`, `API ::ns::Type f()`: the colons start the name.
-                apart = head.start(1) > head.start() and visible[at + 2] not in " \n\t"
-                if spelt in KEYWORDS or (apart and spelt.isupper()):
-                    if not tail.group(2):
-                        words.add(name)
-                        continue
-                else:
-                    name = spelt + "::" + name
-                    name_at = length - head.end(1)
-            elif not tail.group(2) or backwards[length - at : length - at + 1] in (">", ")"):
-                continue
-            if "::" not in name:
-                continue
-            if not name.isascii() or " " in name or "\n" in name or "\t" in name:
-                name = _SPACE.sub("", name)
-            elif name not in variables and _VARIABLE.match(visible, position) is not None:
-                line_start = visible.rfind("\n", 0, name_at) + 1
-                if _BEFORE_VARIABLE.fullmatch(visible, line_start, name_at) is not None:
-                    variables[sys.intern(name)] = None
+        found: list[tuple[int, str]] = []
+        for token in joined:
+            spelt, names, bare = _names_in(token)
+            words.discard(token)
+            words.update(bare)
+            for offset, name, begins in names:
+                if name not in known:
+                    at = _find_token(piece, spelt, begins)
+                    if at >= 0:
+                        found.append((start + at + offset, name))
+        found.sort()
+        for at, name in found:
             if name not in known:
-                name = sys.intern(name)
                 known.add(name)
-                qualified.append(Name(name, *place(name_at), conditions))
+                qualified.append(Name(name, *place(at), conditions))
 
+    plain = b" ".join(words - _KEYWORD_BYTES).decode().split(" ")
     return CppFile(
         includes=includes_of(scanned),
         qualified=tuple(qualified),
-        words=" ".join(
-            sorted(w for w in words if len(w) > 3 and ":" not in w and not w[0].isdigit() and w not in KEYWORDS)
-        ),
-        defined=tuple(defined),
+        words=" ".join(sorted([word for word in plain if len(word) > 3 and word[0] not in _DIGITS])),
+        defined=tuple(scanned.defined),
         using=tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible))),
-        problems=tuple(sorted(problems, key=_by_line)),
+        problems=tuple(sorted(scanned.problems, key=_by_line)),
         exports=exports_of(visible),
         references=_references(text, visible, place),
         main=any(
             _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
         ),
         types=types_of(visible),
-        variables=tuple(variables),
+        variables=_variables(visible),
     )
 
 
-# Every alternative starts with its keyword, so that the search skips plain code; what stands before is looked at after.
+def _tie(visible: str) -> str:
+    """A text in which the blanks around `::` between two words are _TIE, so that a qualified name is one token."""
+    tied = visible.replace(_TIE, " ")
+    if _SPREAD.search(tied) is not None:
+        tied = _AHEAD.sub(_tied, _AHEAD.sub(_tied, tied)[::-1])[::-1]
+    return tied if tied.isascii() else _NO_TOKEN.sub(" ", tied)
+
+
+def _tied(match: re.Match[str]) -> str:
+    return "::" + _TIE * (len(match.group()) - 2)
+
+
+def _pieces(scanned: Scan, tied: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
+    """The segments; long ones in pieces, since each name is looked for from the start."""
+    for start, end, conditions in scanned.segments:
+        while end - start > _LONGEST_PIECE and (blank := _BLANK.search(tied, start + _LONGEST_PIECE, end)):
+            yield start, blank.start(), conditions
+            start = blank.start()
+        yield start, end, conditions
+
+
+@lru_cache(maxsize=20_000)
+def _names_in(token: bytes) -> tuple[str, tuple[tuple[int, str, bool], ...], tuple[bytes, ...]]:
+    """A token that has a colon as text; its qualified names by where they begin, with whether the token begins with the
+    colons of one that has no first part; and its bare words."""
+    text = token.decode()
+    bare = [word for word in _WORDS.findall(text) if ":" not in word]
+    names: list[tuple[int, str, bool]] = []
+    backwards, length = text[::-1], len(text)
+    for tail in _TAIL.finditer(text):
+        at = tail.start()
+        head = _HEAD_BACKWARDS.match(backwards, length - at)
+        name_at, name = tail.start(1), tail.group(1) + tail.group(2)
+        if head is not None:
+            spelt = head.group(1)[::-1]
+            # `return ::close(fd)`, `API ::ns::Type f()`: the colons start the name.
+            apart = head.start(1) > head.start() and text[at + 2] != _TIE
+            if spelt not in KEYWORDS and not (apart and spelt.isupper()):
+                name_at, name = length - head.end(1), spelt + "::" + name
+            elif not tail.group(2):
+                bare.append(name)
+        if "::" in name:
+            names.append((name_at, sys.intern(_SPACE.sub("", name)), not at))
+    return text, tuple(names), tuple(word.encode() for word in bare)
+
+
+def _find_token(text: str, token: str, begins: bool) -> int:
+    """Where a token first stands by itself, -1 without such a place. begins: with colons that belong to nothing before
+    them, as they do in `vector<int>::iterator`."""
+    at = text.find(token)
+    while at >= 0:
+        before, after = text[at - 1 : at], text[at + len(token) : at + len(token) + 1]
+        if not _IN_TOKEN.match(before) and not _IN_TOKEN.match(after) and not (begins and before in (">", ")")):
+            break
+        at = text.find(token, at + 1)
+    return at
+
+
+def _variables(visible: str) -> tuple[str, ...]:
+    """The qualified types of variables that begin a line."""
+    variables: dict[str, None] = {}
+    for match in _VARIABLE.finditer(visible):
+        at = match.start()
+        before = _BEFORE_VARIABLE.fullmatch(visible, visible.rfind("\n", 0, at) + 1, at)
+        if before is not None:
+            head, blank = before.groups("")
+            name = f"{head}::{match.group(1)}" if head else match.group(1)
+            if head not in KEYWORDS and not (blank and head.isupper()) and "::" in name and name.isascii():
+                variables[sys.intern(name)] = None
+    return tuple(variables)
+
+
+# An expression that starts with a literal skips plain code; what stands before it is looked at after.
 _NAMESPACE = re.compile(r"namespace(?<!\wnamespace)\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
 _TYPE = re.compile(
-    r"(?:struct(?<!\wstruct)|class(?<!\wclass)|union(?<!\wunion)|enum(?<!\wenum)(?:\s+class|\s+struct)?)\s{1,20}"
+    r"(?:(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}"
     r"(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
-    r"|using(?<!\wusing)\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef(?<!\wtypedef)\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
+    r"|using\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};)"
 )
+_TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef")
+_BEGIN_TYPES = [re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS]
 _MOST_TYPES = 400
 
 
@@ -414,7 +488,12 @@ def types_of(visible: str) -> tuple[str, ...]:
     spaces = dict.fromkeys(_SPACE.sub("", match) for match in _NAMESPACE.findall(visible))
     if not spaces:
         return ()
-    names = dict.fromkeys(next(filter(None, match)) for match in _TYPE.findall(visible))
+    names: dict[str, None] = {}
+    position = 0
+    for at in sorted([match.start() for begin in _BEGIN_TYPES for match in begin.finditer(visible)]):
+        if at >= position and (match := _TYPE.match(visible, at)) is not None:
+            position = match.end()
+            names[match.group(match.lastindex or 0)] = None
     found = (f"{space}::{name}" for space in spaces for name in names)
     return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
 

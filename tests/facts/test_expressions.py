@@ -1,0 +1,40 @@
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.facts.expressions import has_needed, last_literals, needed_words
+
+
+@pytest.mark.parametrize(
+    ("expression", "words", "ends"),
+    [
+        ("rclcpp::", ("rclcpp",), ("rclcpp::",)),
+        (r"(?:->|\.)\s*", (), ("->", ".")),
+        (r"static\s+const\s+", ("static", "const"), ("const",)),
+        (r"\)\s*(?:const\s*)?", (), ("const", ")")),
+        (r"\bvoid\s+(?:\w+::)*", ("void",), ("::", "void")),
+        (r"(?:[;{}(,]|\bstruct\s|\bstatic)\s*", (), ()),
+        (r"(?:const\s+)?urdf\s*::\s*(?:Link|Joint)", ("urdf", ("Link", "Joint")), ("Link", "Joint")),
+        (r"(?s)\A(?=.*\busing\s+namespace\s+(?:std|boost)\s*;)", ("using", "namespace"), ()),
+        (r"(?:depth|)::Image", ("Image",), ("::Image",)),
+        (r"shared(?!_from)_ptr", ("shared_ptr",), ("_ptr",)),
+        (r"(?i)depth", (), ()),
+        (r"(?:depth)?", (), ()),
+        (r"(?:depth)+", ("depth",), ("depth",)),
+        ("", (), ()),
+    ],
+)
+def test_what_a_match_contains_and_ends_with(expression, words, ends):
+    assert needed_words(expression) == tuple((word,) if isinstance(word, str) else word for word in words)
+    assert last_literals(expression) == ends
+
+
+@given(st.from_regex(r"(?:\bnode|this)\s*(?:->|\.)\s*publish(?:er)?(?:_\w+)*\s*", fullmatch=True))
+def test_all_that_matches_has_them(text):
+    expression = r"(?:\bnode|this)\s*(?:->|\.)\s*publish(?:er)?(?:_\w+)*\s*"
+    assert re.search(expression, text)
+    assert all(any(word in text for word in words) for words in needed_words(expression))
+    assert has_needed(expression, text)
+    ends = last_literals(expression)
+    assert not ends or text.rstrip().endswith(ends)
