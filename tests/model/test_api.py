@@ -76,7 +76,7 @@ def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    words = [word for word in sorted(vocabulary.words) if word in text or word in ASSIGNING]
+    words = [word for word in sorted(vocabulary.looked_for(vocabulary.words)) if word in text or word in ASSIGNING]
     found = ApiUses(resolver(text, vocabulary, *headers), {"arm", "leg"}).found(words)
     told = []
     for use in sorted(found, key=lambda use: use.offset):
