@@ -20,7 +20,7 @@ from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, Row
-from ..targets.evidence import Evidence
+from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import Machine, machine, machine_of

@@ -14,9 +14,12 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Hashable, Iterable
+from typing import TYPE_CHECKING
 
 from ..facts.condition import Condition
-from ..model.view import View
+
+if TYPE_CHECKING:
+    from ..model.view import View
 
 
 class Doubt(enum.Enum):
