@@ -31,7 +31,7 @@ from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, groups
 from rosimpact.impact.rules.severity import Doubt, Together
 from rosimpact.impact.rules.text import Text
-from rosimpact.impact.targets.evidence import Evidence
+from rosimpact.impact.targets.evidence_record import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
 TEXTS = {"": Text("{message}[[ in tf2 {version}]]")}

@@ -4,63 +4,24 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from ...edges.console import unforeseen
-from ...edges.version import __version__
-from ..config import Config, PathSetting
-from ..facts.extract import Gathered
-from ..model.view import View
-from ..model.workspace import Workspace
-from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Cure, Diagnostic, Finding, Rule, all_rules
-from ..targets.resolve import Chosen
-from ..targets.version import compare as compare_versions
 from ..tree import Tree, WorkingTree
-from . import result_cache
-from .cross_target_fix import Split, add_evidence
-from .findings import (
-    SettingsError,
-    Suppression,
-    apply_settings,
-    mark_new,
-    merge_diagnostics,
-    read_baseline,
-    sort_findings,
-    split_by_baseline,
-    suppress,
-    verify_settings,
-)
-from .report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
-from .run_rules import Crashes, run_rules
+from . import report_cache
+from .report import Checked, Report
 from .session import (
     DEFAULTS,
     CheckError,
-    Opened,
     Options,
     Progress,
-    explain_nothing_analysed,
-    make_reader,
-    open_workspace,
-    select_rules,
+    link_workspace,
+    read_workspace,
 )
 
 if TYPE_CHECKING:
-    from ..model.install_space import Installed
-    from ..targets.machine.shared_libraries import Shelf
-    from .downstream import Impact
-
-
-class Checked(NamedTuple):
-    """What a check gives: the report, and what it was made with. originals: what the files held that fixes change, when
-    the fixes were made."""
-
-    report: Report
-    config: Config
-    tree: Tree
-    originals: Mapping[str, bytes]
+    from ..rules.rule import Finding
 
 
 def check(
@@ -91,117 +52,18 @@ def run(
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
-    with open_workspace(path, options, progress, lambda config: select_rules(options, config), tree) as opened:
-        return check_opened(path, options, opened, base_tree=base_tree, started=started)
+    compared = bool(options.base) or base_tree is not None
+    with read_workspace(path, options, progress, report_cache.asks_flow, tree) as read:
+        key = None if compared else report_cache.report_key(read, options)
+        if key is not None and (known := report_cache.load_report(path, read, key, started)) is not None:
+            return known
+        from .judgement import check_opened
 
-
-def check_opened(
-    path: str | os.PathLike[str],
-    options: Options,
-    opened: Opened,
-    *,
-    base_tree: Tree | None = None,
-    started: float | None = None,
-) -> Checked:
-    """The check of a workspace that is read already. Raises as check() does.
-
-    base_tree: as for check(). started: when the work began, by time.perf_counter(); now when None.
-    """
-    started = time.perf_counter() if started is None else started
-    rules = all_rules()
-    tree, store, gathered, workspace, targets, views, config, _, installed, shelves = opened
-    chosen = select_rules(options, config)
-    settings = _settings(rules, config)
-    sources = Sources(make_reader(tree))
-    crashed: Crashes = {}
-    reached: Impact | None = None
-    notes: list[str] = []
-    if options.base or base_tree is not None:
-        from . import revision_compare as bases
-
-        if base_tree is None:
-            base_tree, notes = bases.base_tree(tree, options.base)
-        before = bases.open_base(base_tree, opened, jobs=options.jobs)
-        old = run_and_merge(before, chosen, settings, Sources(make_reader(base_tree)), crashed, jobs=options.jobs)
-        now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
-        found: Sequence[Finding] = mark_new(now.kept, old.kept)
-        reached = _reached(workspace, before.workspace, crashed)
-    else:
-        now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
-        found = now.kept
-    if any(finding.evidence for finding in found):
-        for view in views:
-            result_cache.load_changes(store, view.target)
-        found, parted = add_evidence(found, views)
-        if parted and "unguarded-split" in chosen:
-            found = sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
-    originals: dict[str, bytes] = {}
-    if any(finding.fix for finding in found):
-        from . import fix
-
-        found = fix.make_fixes(found, make_reader(tree), originals)
-    known: Sequence[Finding] = ()
-    if options.baseline:
-        found, known = split_by_baseline(found, read_baseline(options.baseline))
-    notes += store.notes
-    failures = [] if workspace.packages else [explain_nothing_analysed(path, opened)]
-    failures += [f"the rule {rule} failed{format_targets(crashed[rule, why])}: {why}" for rule, why in crashed]
-    report = Report(
-        version=__version__,
-        data=targets[0].target.data_date if targets else "",
-        targets=(
-            *(_reported(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
-            *_alone({chosen_target.target.name for chosen_target in targets}, shelves),
-        ),
-        findings=tuple(found),
-        coverage=coverage(workspace, gathered, views, installed),
-        packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
-        suppressed=tuple(now.suppressed),
-        known=tuple(known),
-        rules=tuple(chosen.values()),
-        seconds=time.perf_counter() - started,
-        excerpt=sources.excerpt,
-        root=os.fspath(path),
-        base=" ".join(options.base) or (base_tree.label if base_tree is not None else ""),
-        failure="; ".join(failures),
-        impact=reached,
-    )
-    return Checked(report, config, tree, originals)
-
-
-def _splits(
-    parted: Sequence[tuple[Finding, Split]],
-    opened: Opened,
-    rules: Mapping[str, Rule],
-    settings: Sequence[PathSetting],
-    sources: Sources,
-) -> list[Finding]:
-    """Findings of unguarded-split, which rest on findings of other rules; new where all of those are."""
-    from ..rules.api.unguarded_split import list_splits
-
-    found_splits = list_splits((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
-    found = merge_diagnostics(
-        (("unguarded-split", target, one) for target, one in found_splits),
-        targets=[view.target.name for view in opened.views],
-        rules=rules,
-        line_text=sources.line,
-    )
-    old = {finding.package for finding, _ in parted if not finding.new}
-    marked = [finding._replace(new=finding.package not in old) for finding in found]
-    allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
-    configured = apply_settings(marked, settings, rules)
-    return suppress(configured, allows, rules=rules, ran=()).kept
-
-
-def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
-    """What the changes since the base reach; None where that failed, which is noted as a rule's failure is."""
-    from .downstream import impact_of
-
-    try:
-        return impact_of(workspace, base)
-    except Exception as error:
-        crashed.setdefault(("impact", unforeseen(error)), [])
-        return None
+        opened = link_workspace(read, path, options)
+        checked = check_opened(path, options, opened, base_tree=base_tree, started=started)
+        if key is not None and opened.workspace.whole and not checked.report.failure:
+            report_cache.store_report(read, key, checked)
+        return checked
 
 
 def check_workspace(
@@ -232,139 +94,6 @@ def check_workspace(
     if not report.packages:
         raise CheckError(report.failure)
     return list(report.findings)
-
-
-def _reported(chosen: Chosen, notes: Iterable[str]) -> ReportedTarget:
-    target = chosen.target
-    return ReportedTarget(
-        target.name, target.distro, target.date, target.platform, chosen.reason, (*target.notes, *notes)
-    )
-
-
-def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
-    """Machines that only built files are checked on: this one, where no target is it."""
-    for shelf in shelves:
-        if shelf.target not in names:
-            note = "only built files were checked on it"
-            yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
-
-
-def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
-    """Settings by path, those for the whole workspace first, so that the others go over them."""
-    everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
-    try:
-        verify_settings(everywhere, rules)
-    except SettingsError as error:
-        text = str(error).removeprefix('[paths."**"]: ')
-        raise SettingsError(f"{config.path}: [check]: {text}") from None
-    try:
-        return (*everywhere, *verify_settings(config.paths, rules))
-    except SettingsError as error:
-        raise SettingsError(f"{config.path}: {error}") from None
-
-
-def run_and_merge(
-    opened: Opened,
-    rules: Mapping[str, Rule],
-    settings: Sequence[PathSetting],
-    sources: Sources,
-    crashed: Crashes,
-    before: Workspace | None = None,
-    jobs: int | None = None,
-) -> Suppression:
-    """Runs the rules. before: the workspace at the base, for rules that compare. crashed: gets the rules that
-    failed; what the others found stands."""
-    workspace, views = opened.workspace, opened.views
-    names = [view.target.name for view in views]
-    known = all_rules()
-    by_name = {view.target.name: view for view in views}
-
-    def merge(diagnostics: Iterable[tuple[str, str, Diagnostic]]) -> list[Finding]:
-        found = merge_diagnostics(
-            diagnostics,
-            targets=names,
-            rules=rules,
-            line_text=sources.line,
-            holds=lambda fix, target: all(is_right_on(cure, by_name[target]) for cure in fix),
-        )
-        return apply_settings(found, settings, known)
-
-    allows = {path: comments for package in workspace for path, comments in package.digest.allows}
-    result = suppress(
-        merge(run_rules(opened, rules.values(), crashed, before, jobs)),
-        allows,
-        rules=known,
-        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
-    )
-    kept = list(result.kept)
-    if "unused-suppression" in rules and result.unused:
-        from ..rules.general.unused_suppression import find_unused
-
-        kept = sort_findings(
-            [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
-        )
-    return result._replace(kept=kept)
-
-
-def format_targets(targets: Sequence[str]) -> str:
-    """` on jazzy, robot`, empty without targets."""
-    return f" on {', '.join(targets)}" if targets else ""
-
-
-def is_right_on(cure: Cure, view: View) -> bool:
-    """Whether a cure is right on a target where the rule found nothing to cure.
-
-    A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
-    """
-    if isinstance(cure, Declare):
-        return view.available(cure.name)
-    if isinstance(cure, Replace):
-        return _has_header(view, cure.new.strip('<>"'))
-    if isinstance(cure, Insert):
-        text = cure.text.strip()
-        return text.startswith("#include <") and "\n" not in text and view.is_standard(text[10:].rstrip("> "))
-    return False
-
-
-def _has_header(view: View, path: str) -> bool:
-    target = view.target
-    if view.is_standard(path) or view.workspace.provides_header(path):
-        return True
-    for provider in view.header(path):
-        version = target.version(provider.name) if provider.kind == "ros" else None
-        if not version:
-            continue
-        for span in view.providers.header_history(provider.name, path):
-            # A span without an end goes on in the distro's releases after the newest one whose files are known.
-            here = span.distro == target.distro and compare_versions(span.first, version) <= 0
-            if here and (span.last is None or compare_versions(version, span.last) <= 0):
-                return True
-    return target.platform in view.providers.header_platforms(path)
-
-
-def coverage(
-    workspace: Workspace, gathered: Gathered, views: Sequence[View], installed: Installed | None = None
-) -> Coverage:
-    """How much was read and resolved."""
-    broken = {path for package in workspace for path, _, _ in package.digest.problems}
-    unresolved: dict[str, set[str]] = {}
-    for view in views:
-        for kind, names in view.unresolved.items():
-            unresolved.setdefault(kind, set()).update(names)
-    counts = {kind: len(names) for kind, names in sorted(unresolved.items()) if names}
-    cmake = sum(len(package.build.unresolved) for package in workspace)
-    if cmake:
-        counts["cmake"] = counts.get("cmake", 0) + cmake
-    receivers = sum(package.digest.unresolved_receivers for package in workspace)
-    if receivers:
-        counts["receiver"] = receivers
-    # A file can be read and still have something wrong with it, such as its name.
-    files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
-    parsed = len(gathered.kinds) - len(broken & gathered.kinds.keys())
-    if installed is not None:
-        sound = sum(not binary.elf.problem for binary in installed.binaries)
-        files, parsed = files + sound, parsed + sound
-    return Coverage(len(workspace.packages), files, parsed, counts)
 
 
 def compare(path: str | os.PathLike[str], base: str | os.PathLike[str], options: Options | None = None) -> Report:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..rules.rule import Finding
 from ..targets.changes import version_of
-from ..targets.evidence import Evidence, OnTarget, holds_on, seen_on
+from ..targets.evidence import holds_on, seen_on
+from ..targets.evidence_record import Evidence, OnTarget
 from ..targets.providers.version_macros import version_test
 from ..targets.version import at_least
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.console import counted
 from ..rules.rule import Finding, Rule
 
 if TYPE_CHECKING:
+    from ..config import Config
+    from ..targets.resolve import Chosen
+    from ..tree import Tree
     from .downstream import Impact
 
 CONTEXT = 1
@@ -27,6 +30,14 @@ class ReportedTarget(NamedTuple):
     platform: str
     reason: str = ""
     notes: tuple[str, ...] = ()
+
+
+def report_target(chosen: Chosen, notes: Iterable[str]) -> ReportedTarget:
+    """A chosen target as reported. notes: further ones."""
+    target = chosen.target
+    return ReportedTarget(
+        target.name, target.distro, target.date, target.platform, chosen.reason, (*target.notes, *notes)
+    )
 
 
 class ReportedPackage(NamedTuple):
@@ -67,13 +78,23 @@ class Report(NamedTuple):
     packages: tuple[ReportedPackage, ...] = ()
     suppressed: tuple[Finding, ...] = ()
     known: tuple[Finding, ...] = ()
-    rules: tuple[Rule, ...] = ()
+    rules: Sequence[Rule] = ()
     seconds: float = 0.0
     excerpt: Callable[[str, int], list[str]] = _no_excerpt
     root: str = "."
     base: str = ""
     failure: str = ""
     impact: Impact | None = None
+
+
+class Checked(NamedTuple):
+    """What a check gives: the report, and what it was made with. originals: what the files held that fixes change, when
+    the fixes were made."""
+
+    report: Report
+    config: Config
+    tree: Tree
+    originals: Mapping[str, bytes]
 
 
 class Sources:

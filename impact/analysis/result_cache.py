@@ -19,21 +19,20 @@ from ..model.flow.file_selection import stamp
 from ..model.package import Watched
 from ..model.view import View
 from ..model.workspace import Workspace
-from ..rules.fix_actions import Declare, Insert, Remove, Replace
-from ..rules.rule import Cure, Diagnostic, Edit
+from ..rules.rule import Diagnostic
 from ..rules.severity import Doubt
 from ..source_keys import code_stamp
 from ..targets.availability import horizons
 from ..targets.changes import looked_for
-from ..targets.evidence import Evidence
+from ..targets.evidence_record import Evidence
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
 from ..targets.target import Change, Target
+from .stored_fix import PackedFix, pack_fix, unpack_fix
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic]
-_CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
 
 
 class _Stored(msgspec.Struct, frozen=True, array_like=True):
@@ -46,7 +45,7 @@ class _Stored(msgspec.Struct, frozen=True, array_like=True):
     subject: str
     package: str
     severity: str
-    fix: tuple[tuple[str, tuple[str | int, ...]], ...]
+    fix: PackedFix
     evidence: Evidence | None
     kind: str
     data: dict[str, str | int | float | tuple[str, ...]]
@@ -166,7 +165,7 @@ def _packed(rule: str, diagnostic: Diagnostic) -> _Stored:
         diagnostic.subject,
         diagnostic.package,
         diagnostic.severity,
-        tuple((type(cure).__name__, tuple(cure)) for cure in diagnostic.fix),
+        pack_fix(diagnostic.fix),
         diagnostic.evidence,
         diagnostic.kind,
         dict(diagnostic.data),
@@ -176,8 +175,8 @@ def _packed(rule: str, diagnostic: Diagnostic) -> _Stored:
 
 def _unpacked(stored: _Stored) -> Diagnostic:
     at = At(stored.path, stored.line, stored.column)
-    fix: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in stored.fix)
     doubts = tuple(Doubt[name] for name in stored.doubts)
     return Diagnostic(
-        at, stored.subject, stored.package, stored.data, stored.kind, doubts, stored.severity, fix, stored.evidence
+        at, stored.subject, stored.package, stored.data, stored.kind, doubts, stored.severity,
+        unpack_fix(stored.fix), stored.evidence,
     )

@@ -26,6 +26,8 @@ _PACKAGE_BYTES = 1 << 20
 _FILE_BYTES = 20 << 10
 # Of the message flow of a whole workspace, beyond what a process may need.
 _PACKAGE_MEMORY = 8 << 20
+# Stands for the place of a view where the message flow is meant.
+_FLOW = -1
 
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
@@ -42,8 +44,10 @@ def run_rules(
     the others are kept. jobs: processes to use, all available cores when None.
     """
     every = list(rules)
-    by_target = _run_on_targets(opened, _of_scope(every, "target"), crashed, jobs)
-    on_flow = _run_on_flow(opened, [rule for rule in every if rule.reads_flow], crashed, before)
+    flow_rules = [rule for rule in every if rule.reads_flow]
+    by_target, on_flow = _run_remembered(
+        opened, _of_scope(every, "target"), flow_rules, crashed, before, jobs or processes.cores()
+    )
     for rule in every:
         if rule.scope == "target":
             for view in opened.views:
@@ -64,10 +68,16 @@ def _of_scope(rules: Iterable[Rule], scope: Scope) -> list[Rule]:
     return [rule for rule in rules if rule.scope == scope]
 
 
-def _run_on_targets(
-    opened: Opened, rules: Sequence[Rule], crashed: Crashes, jobs: int | None
-) -> dict[str, list[Yielded]]:
-    """What rules yield on each target, by its name: remembered from an earlier run where nothing changed."""
+def _run_remembered(
+    opened: Opened,
+    rules: Sequence[Rule],
+    flow_rules: Sequence[Rule],
+    crashed: Crashes,
+    before: Workspace | None,
+    jobs: int,
+) -> tuple[dict[str, list[Yielded]], list[Yielded]]:
+    """What rules yield on each target, by its name, and what flow_rules yield on the message flow: remembered from an
+    earlier run where nothing changed. The rest is done side by side, since linking the flow is slow."""
     names = [rule.name for rule in rules]
     found: dict[str, list[Yielded]] = {}
     fresh = []
@@ -78,33 +88,60 @@ def _run_on_targets(
             result_cache.load_changes(opened.store, view.target)
         else:
             found[view.target.name] = known
-    for place, yielded in _run_in_parts(opened, rules, fresh, crashed, jobs or processes.cores()):
+    key, on_flow = b"", None if flow_rules else []
+    if flow_rules:
+        key = result_cache.flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
+        on_flow = result_cache.load_flow_results(opened.store, key)
+    asked = flow_rules if on_flow is None else ()
+    failed: Crashes = {}
+    for place, yielded in _run_in_parts(opened, rules, fresh, asked, before, crashed, failed, jobs):
+        if place == _FLOW:
+            on_flow = yielded
+            if not failed:
+                result_cache.store_flow_results(opened.store, key, yielded)
+            continue
         view = opened.views[place]
         found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})
         if not crashed:
             result_cache.store_results(opened.store, view, names, yielded)
-    return found
+    crashed.update(failed)
+    return found, on_flow or []
 
 
 def _run_in_parts(
-    opened: Opened, rules: Sequence[Rule], places: Sequence[int], crashed: Crashes, jobs: int
+    opened: Opened,
+    rules: Sequence[Rule],
+    places: Sequence[int],
+    flow_rules: Sequence[Rule],
+    before: Workspace | None,
+    crashed: Crashes,
+    failed: Crashes,
+    jobs: int,
 ) -> Iterator[tuple[int, list[Yielded]]]:
-    """What the rules yield for these views, each with its place among them."""
+    """What the rules yield for these views, each with its place among them, and flow_rules on the message flow, with
+    _FLOW for a place; failed: receives those of them that failed."""
     packages = list(opened.workspace.packages)
     if not packages or not processes.may_fork():
         for place in places:
             yield place, list(_run_all(rules, opened.views[place], crashed))
+        if flow_rules:
+            yield _FLOW, _run_flow_part(opened, flow_rules, before, failed)
         return
-    if len(packages) * len(places) < _ALONE:
+    if len(packages) * len(places) < _ALONE and not flow_rules:
         jobs = 1
     # A rule that does not end on a package must not stop the run: no rule runs in this process.
     size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs) if jobs > 1 else len(packages)))
-    tasks = [(place, at) for place in places for at in range(0, len(packages), size)]
+    parts = [(place, at) for place in places for at in range(0, len(packages), size)]
+    # The message flow takes longest.
+    tasks = [(_FLOW, 0), *parts] if flow_rules else parts
     done = {}
-    opened.store.close()  # no other process may go on with a connection of this one
-    for task, result in processes.forked(_run_part, tasks, jobs, opened, rules, packages, size):
-        done[task] = _run_singly(opened, rules, packages, size, task) if isinstance(result, processes.Died) else result
-    for place, tasks_of_view in groupby(tasks, key=lambda task: task[0]):
+    if tasks:
+        opened.store.close()  # no other process may go on with a connection of this one
+    for task, result in processes.forked(_run_task, tasks, jobs, opened, rules, packages, size, flow_rules, before):
+        if isinstance(result, processes.Died) and task[0] != _FLOW:
+            result = _run_singly(opened, rules, packages, size, task)
+        done[task] = result
+    for place, tasks_of_view in groupby(parts, key=lambda task: task[0]):
         view = opened.views[place]
         yielded: dict[str, list[Yielded]] = {}
         for task in tasks_of_view:
@@ -116,6 +153,29 @@ def _run_in_parts(
             for failure in failures:
                 _record_failure(crashed, failure, view.target.name)
         yield place, [each for rule in rules for each in yielded.get(rule.name, ())]
+    if flow_rules:
+        result = done[_FLOW, 0]
+        if isinstance(result, processes.Died):
+            failed[", ".join(rule.name for rule in flow_rules), f"the check of the message flow {result.why}"] = []
+            result = [], {}
+        failed.update(result[1])
+        yield _FLOW, result[0]
+
+
+def _run_task(
+    opened: Opened,
+    rules: Sequence[Rule],
+    packages: Sequence[str],
+    size: int,
+    flow_rules: Sequence[Rule],
+    before: Workspace | None,
+    task: tuple[int, int],
+):
+    """What a process does: a part of a view, or the message flow."""
+    if task[0] == _FLOW:
+        failed: Crashes = {}
+        return _run_flow_part(opened, flow_rules, before, failed), failed
+    return _run_part(opened, rules, packages, size, task)
 
 
 def _run_part(
@@ -169,45 +229,16 @@ def _run_all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]
             yield rule.name, hit
 
 
-def _run_on_flow(
-    opened: Opened, rules: Sequence[Rule], crashed: Crashes, before: Workspace | None
-) -> list[Yielded]:
-    """What rules yield on the message flow: stored under the hash of its input, since linking the flow is slow."""
-    if not rules:
-        return []
-    key = result_cache.flow_key(opened.workspace, before, [rule.name for rule in rules])
-    known = result_cache.load_flow_results(opened.store, key)
-    if known is not None:
-        return known
-    failed: Crashes = {}
-    yielded: list[Yielded] = []
-    if processes.may_fork():
-        opened.store.close()  # no other process may go on with a connection of this one
-        found = dict(processes.forked(_run_flow_part, [0], 1, opened, rules, before))[0]
-        if isinstance(found, processes.Died):
-            failed[", ".join(rule.name for rule in rules), f"the check of the message flow {found.why}"] = []
-        else:
-            yielded, failed = found
-    else:
-        yielded, failed = _run_flow_part(opened, rules, before, 0)
-    if not failed:
-        result_cache.store_flow_results(opened.store, key, yielded)
-    crashed.update(failed)
-    return yielded
-
-
 def _run_flow_part(
-    opened: Opened, rules: Sequence[Rule], before: Workspace | None, _: int
-) -> tuple[list[Yielded], Crashes]:
-    """What rules yield on the message flow, and the rules that failed."""
+    opened: Opened, rules: Sequence[Rule], before: Workspace | None, failed: Crashes
+) -> list[Yielded]:
+    """What rules yield on the message flow. failed: receives the rules that failed."""
     packages = opened.workspace.packages
     processes.begin_part(0, _estimate_bytes(opened.workspace, packages))
     processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
-    failed: Crashes = {}
-    yielded = [
+    return [
         (rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))
     ]
-    return yielded, failed
 
 
 def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:

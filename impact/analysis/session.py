@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,22 +14,19 @@ from ...edges.limits import limits
 from ..config import Config, ConfigError, load, parse
 from ..facts.extract import Gathered, gather
 from ..facts.store import Store
-from ..model.discovery import discover
-from ..model.flow.file_selection import code_kinds
-from ..model.view import View
-from ..model.workspace import Workspace, generation, link
-from ..rules.rule import Rule, all_rules
-from ..targets.asked_versions import AskedVersions
-from ..targets.providers.providers import default_providers
+from ..model.discovery import Discovered, discover, generation
 from ..targets.resolve import Chosen, choose_targets
 from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 from ..tree.ignore import Index, enclosing_repository
 from ..tree.paths import within
-from .findings import SettingsError, choose_rules
-from .result_cache import load_tracked_names
 
 if TYPE_CHECKING:
     from ..model.install_space import Installed
+    from ..model.package import Watched
+    from ..model.view import View
+    from ..model.workspace import Workspace
+    from ..rules.rule import Rule
+    from ..targets.asked_versions import AskedVersions
     from ..targets.machine.shared_libraries import Shelf
 
 
@@ -85,6 +83,20 @@ class Opened(NamedTuple):
             yield self._replace(targets=[chosen], views=[view])
 
 
+class Read(NamedTuple):
+    """A workspace whose files are read: its facts, where its packages are, and the targets that it is asked about. ros:
+    its generation. tracked_names: gives the names that rules look out for, worked out when first asked for."""
+
+    tree: Tree
+    store: Store
+    gathered: Gathered
+    discovered: Discovered
+    ros: int
+    targets: Sequence[Chosen]
+    config: Config
+    tracked_names: Callable[[], Watched]
+
+
 @contextmanager
 def open_workspace(
     path: str | os.PathLike[str],
@@ -98,31 +110,79 @@ def open_workspace(
     chosen: gives the rules that will be asked, so that all facts they need are made in one pass. tree: what is read
     instead of what is at the path.
     """
+
+    def asks_flow(config: Config, store: Store, options: Options) -> bool:
+        return chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
+
+    with read_workspace(path, options, progress, asks_flow, tree) as read:
+        yield link_workspace(read, path, options)
+
+
+@contextmanager
+def read_workspace(
+    path: str | os.PathLike[str],
+    options: Options,
+    progress: Progress | None,
+    asks_flow: Callable[[Config, Store, Options], bool],
+    tree: Tree | None = None,
+) -> Iterator[Read]:
+    """Reads the files of a workspace, without linking what they say. The store is closed at the end. Raises as check()
+    does.
+
+    asks_flow: whether facts of the message flow will be needed. tree: as for open_workspace().
+    """
     root = Path(path)
     if tree is None:
         tree = open_tree(root, options.rev, follow_links=options.follow_links)
     config = load_settings(root, tree, options.config, follow_links=options.follow_links)
-    asks_flow = chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
     with Store(options.cache) as store:
-        second = code_kinds(tree) if asks_flow else None
-        watched = load_tracked_names(store)
-        gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second, along=watched.searches)
+
+        @cache
+        def tracked_names() -> Watched:
+            from .result_cache import load_tracked_names
+
+            return load_tracked_names(store)
+
+        second = None
+        if asks_flow(config, store, options):
+            from ..model.flow.file_selection import code_kinds
+
+            second = code_kinds(tree)
+        gathered = gather(
+            tree,
+            store,
+            jobs=options.jobs,
+            progress=progress,
+            second=second,
+            along=lambda: tracked_names().searches(),
+        )
         discovered = discover(tree, gathered)
         ros = generation(discovered, gathered)
         targets = choose_targets(options.targets, config, ros, tree)
-        asked_versions = AskedVersions(chosen.target for chosen in targets)
-        workspace = link(tree, gathered, store, ros, watched, options.jobs, discovered, asked_versions)
-        gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
-        asked = frozenset(chosen.target.distro for chosen in targets)
-        views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
-        installed, shelves = None, ()
-        if options.install is not None:
-            from ..model import install_space as built
+        yield Read(tree, store, gathered, discovered, ros, targets, config, tracked_names)
 
-            installed = built.of_workspace(options.install, root, workspace, store, options.jobs)
-            shelves = built.shelves(installed, targets, config)
-            gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
-        yield Opened(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
+
+def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> Opened:
+    """A workspace that is read, linked and seen from each of its targets."""
+    from ..model.view import View
+    from ..model.workspace import link
+    from ..targets.asked_versions import AskedVersions
+    from ..targets.providers.providers import default_providers
+
+    tree, store, gathered, discovered, ros, targets, config, tracked_names = read
+    asked_versions = AskedVersions(chosen.target for chosen in targets)
+    workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
+    gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
+    asked = frozenset(chosen.target.distro for chosen in targets)
+    views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
+    installed, shelves = None, ()
+    if options.install is not None:
+        from ..model import install_space as built
+
+        installed = built.of_workspace(options.install, Path(path), workspace, store, options.jobs)
+        shelves = built.shelves(installed, targets, config)
+        gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
+    return Opened(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
 
 
 def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
@@ -229,6 +289,9 @@ def select_rules(options: Options, config: Config) -> dict[str, Rule]:
 
     Raises SettingsError for a name that is neither a rule nor a family.
     """
+    from ..rules.rule import all_rules
+    from .findings import SettingsError, choose_rules
+
     rules = all_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from ..rules.rule import Finding
-from .check import Checked, check_opened
+from .check import Checked
 from .findings import rank
+from .judgement import check_opened
 from .session import CheckError, Opened, Options, open_workspace, select_rules
 
 

@@ -65,15 +65,28 @@ class AskedForm(NamedTuple):
 
 
 class Name:
-    """A changing name, as the versions that are asked about have it; most of it is worked out where it is needed. what:
-    as in surface_changes.Told. there: one of the versions has it not, or warns of it."""
+    """A changing name, as the versions that are asked about have it, worked out where it is needed. what: as in
+    surface_changes.Told. lines: its events in the line of each ROS generation, and what makes the forms of them."""
 
-    def __init__(self, package: str, name: str, what: str, forms: tuple[AskedForm, ...]):
-        self.package, self.name, self.what, self.forms = package, name, what, forms
-        self.there = any(not one.standing.there or one.standing.deprecated for one in forms)
+    def __init__(self, package: str, name: str, what: str, lines: tuple[tuple[Sequence[Event], _Forms], ...]):
+        self.package, self.name, self.what, self._lines = package, name, what, lines
         self._by_count: dict[int, tuple[bool, bool]] = {}
 
-    @property
+    def with_line(self, events: Sequence[Event], forms_of: _Forms) -> Name:
+        """The same name with the line of another generation, which goes first and says what it is."""
+        return Name(self.package, self.name, events[0].told[0].what, ((events, forms_of), *self._lines))
+
+    @cached_property
+    def forms(self) -> tuple[AskedForm, ...]:
+        """How the versions that are asked about have it."""
+        return tuple(form for events, forms_of in self._lines for form in forms_of(events))
+
+    @cached_property
+    def there(self) -> bool:
+        """Whether one of the versions has it not, or warns of it."""
+        return any(not one.standing.there or one.standing.deprecated for one in self.forms)
+
+    @cached_property
     def matters(self) -> bool:
         """Whether a use of it may be wrong in one of the versions."""
         return self.there or any(_others(one.standing) or _has_other_default(one.standing) for one in self.forms)
@@ -90,7 +103,11 @@ class Name:
     @cached_property
     def pure(self) -> bool:
         """Whether it is a method that one of the versions makes others implement, and versions beside it do not."""
-        return self.what == "method" and any(
+        if self.what != "method" or not any(
+            _is_pure(form) for events, _ in self._lines for event in events for form in (event.had, event.has)
+        ):
+            return False
+        return any(
             _is_pure(here) and ((past and not _is_pure(before)) or (future and not _is_pure(after)))
             for (_, _, here, before, after, past, future), *_ in self.forms
         )
@@ -162,23 +179,54 @@ def _is_pure(form: Form | None) -> bool:
     return any("pure" in one.traits for one in virtual_forms(form))
 
 
-class Known(NamedTuple):
-    """What is asked of one package again and again. names: changing names of C++. by_last: those of which a
-    use can matter, by their last part.
-    bases: classes with the full names of their bases. classes: every class that shows. derived: last parts of classes
-    by the last part of a base. heads: first parts of bases, packages that may have them. pure: classes with
-    their methods that only some versions make others implement. names_begin, classes_begin: first parts of the names
-    and classes, empty for those without scopes."""
+class Known:
+    """What is asked of one package again and again. names: changing names of C++. bases: classes with the full names of
+    their bases. classes: every class that shows, to the package."""
 
-    names: dict[str, Name]
-    by_last: dict[str, tuple[str, ...]]
-    bases: dict[str, tuple[str, ...]]
-    classes: dict[str, str]
-    derived: dict[str, tuple[str, ...]]
-    heads: tuple[str, ...]
-    pure: dict[str, tuple[str, ...]]
-    names_begin: frozenset[str]
-    classes_begin: frozenset[str]
+    def __init__(self, names: dict[str, Name], bases: dict[str, tuple[str, ...]], classes: dict[str, str]):
+        self.names, self.bases, self.classes = names, bases, classes
+
+    @cached_property
+    def by_last(self) -> dict[str, list[str]]:
+        """The changing names by their last part, also those of which no use can matter."""
+        found: dict[str, list[str]] = {}
+        for full in self.names:
+            found.setdefault(full.rpartition("::")[2], []).append(full)
+        return found
+
+    @cached_property
+    def derived(self) -> dict[str, dict[str, None]]:
+        """Last parts of classes by the last part of a base."""
+        found: dict[str, dict[str, None]] = {}
+        for full, those in self.bases.items():
+            for base in those:
+                found.setdefault(base.rpartition("::")[2], {})[full.rpartition("::")[2]] = None
+        return found
+
+    @cached_property
+    def heads(self) -> tuple[str, ...]:
+        """First parts of bases: packages that may have them."""
+        every = (base for those in self.bases.values() for base in those)
+        return tuple(dict.fromkeys(base.partition("::")[0] for base in every if "::" in base))
+
+    @cached_property
+    def pure(self) -> dict[str, list[str]]:
+        """Classes with their methods that only some versions make others implement."""
+        found: dict[str, list[str]] = {}
+        for full, name in self.names.items():
+            if name.pure:
+                found.setdefault(full.rpartition("::")[0], []).append(full)
+        return found
+
+    @cached_property
+    def names_begin(self) -> frozenset[str]:
+        """First parts of the names, empty for those without scopes."""
+        return _begins(self.names)
+
+    @cached_property
+    def classes_begin(self) -> frozenset[str]:
+        """The same of the classes."""
+        return _begins(self.classes)
 
 
 class Changes:
@@ -265,9 +313,8 @@ _MEMBERS = frozenset(("method", "field", "constructor", "destructor", "conversio
 
 def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
     names: dict[str, Name] = {}
-    by_last: dict[str, dict[str, None]] = {}
-    bases: dict[str, dict[str, None]] = {}
-    classes: dict[str, None] = {}
+    bases: dict[str, tuple[str, ...]] = {}
+    classes: dict[str, str] = {}
     for line, forms_of in lines:
         for full, events in line.events.get("c++", {}).items():
             outer, _, last = full.rpartition("::")
@@ -277,39 +324,18 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
                 continue
             before = names.get(full)  # what another generation told of it
             what = events[0].told[0].what
-            names[full] = Name(package, full, what, (*forms_of(events), *(before.forms if before is not None else ())))
+            if before is None:
+                names[full] = Name(package, full, what, ((events, forms_of),))
+            else:
+                names[full] = before.with_line(events, forms_of)
             if what in _MEMBERS:
-                classes[outer] = None
+                classes[outer] = package
             elif what in CLASSES:
-                classes[full] = None
+                classes[full] = package
         for full, those in line.bases.items():
-            classes[full] = None
-            bases.setdefault(full, {}).update(dict.fromkeys(those))
-    for full, name in names.items():
-        if name.matters:
-            by_last.setdefault(full.rpartition("::")[2], {})[full] = None
-    derived: dict[str, dict[str, None]] = {}
-    heads: dict[str, None] = {}
-    pure: dict[str, list[str]] = {}
-    for full, name in names.items():
-        if name.pure:
-            pure.setdefault(full.rpartition("::")[0], []).append(full)
-    for full, those in bases.items():
-        for base in those:
-            derived.setdefault(base.rpartition("::")[2], {})[full.rpartition("::")[2]] = None
-            if "::" in base:
-                heads[base.partition("::")[0]] = None
-    return Known(
-        names,
-        {last: tuple(fulls) for last, fulls in by_last.items()},
-        {full: tuple(those) for full, those in bases.items()},
-        dict.fromkeys(classes, package),
-        {base: tuple(those) for base, those in derived.items()},
-        tuple(heads),
-        {owner: tuple(those) for owner, those in pure.items()},
-        _begins(names),
-        _begins(classes),
-    )
+            classes[full] = package
+            bases[full] = tuple(dict.fromkeys((*bases.get(full, ()), *those)))
+    return Known(names, bases, classes)
 
 
 _KINDS = {"function": ("method", "function"), "variable": ("field", "variable"), "alias": ("alias",)}
@@ -379,15 +405,26 @@ class Vocabulary:
         self.names = _Union((known.names_begin, known.names) for known in every)
         self.classes = _Union((known.classes_begin, known.classes) for known in every)
         """Full name of every known class to its package."""
-        wanted = (known.by_last for package, known in self._known.items() if package not in home)
-        self.words = frozenset().union(*wanted)
-        """Last parts of the names that are looked for."""
+        self._wanted = [known for package, known in self._known.items() if package not in home]
+        self._looked_for: dict[str, bool] = {}
+        self.words = frozenset().union(*(known.by_last for known in self._wanted))
+        """Last parts of the names of which some may be looked for."""
+
+    def looked_for(self, words: Collection[str]) -> set[str]:
+        """Those of some words that are the last part of a name which is looked for."""
+        known = self._looked_for
+        for word in words:
+            if word not in known:
+                known[word] = any(one.names[full].matters for one in self._wanted for full in one.by_last.get(word, ()))
+        return {word for word in words if known[word]}
 
     def by_last(self, word: str) -> tuple[str, ...]:
         """Changing names that end so and of which a use can matter."""
         known = self._by_last.get(word)
         if known is None:
-            names = (name for one in self._known.values() for name in one.by_last.get(word, ()))
+            names = (
+                name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters
+            )
             known = self._by_last[word] = tuple(dict.fromkeys(names))
         return known
 
@@ -399,16 +436,9 @@ class Vocabulary:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
 
-    @cached_property
-    def virtual(self) -> frozenset[str]:
-        """Last parts of the methods that are looked for and that others may override."""
-        return frozenset(
-            last
-            for package, known in self._known.items()
-            if package not in self.home
-            for last, names in known.by_last.items()
-            if any(known.names[name].virtual for name in names)
-        )
+    def is_virtual(self, word: str) -> bool:
+        """Whether a method that is looked for ends so and others may override it."""
+        return any(one.names[full].virtual for one in self._wanted for full in one.by_last.get(word, ()))
 
     def line(self, full: str) -> list[str]:
         """A class and those that it is derived from, nearest first."""
@@ -463,7 +493,7 @@ class Vocabulary:
     def speakers_of_pure(self) -> frozenset[str]:
         """Last parts of the classes with methods that only some versions make others implement, and of those derived
         from them."""
-        owners = (owner for package, known in self._known.items() if package not in self.home for owner in known.pure)
+        owners = (owner for known in self._wanted for owner in known.pure)
         return frozenset().union(*(self.speakers(owner) for owner in owners))
 
     def constructors(self, word: str) -> tuple[str, ...]:

@@ -423,3 +423,27 @@ def _strings(value: Any) -> list[str]:
 
 def _extra(given: dict[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _strings(given.get(key))))
+
+
+def manifest_at(gathered: Gathered, path: str) -> Manifest | None:
+    """What a manifest says; None where there is none, or it could not be read."""
+    if path not in gathered.kinds:
+        return None
+    facts = gathered.facts(path).facts
+    return facts if isinstance(facts, Manifest) else None
+
+
+def generation(discovered: Discovered, gathered: Gathered) -> int:
+    """1 or 2: which ROS generation most packages of the tree are written for."""
+    two = 0
+    total = 0
+    for place in discovered.packages:
+        manifest = manifest_at(gathered, place.manifest_path)
+        if manifest is None:
+            continue
+        total += 1
+        tools = {d.name for d in manifest.dependencies if d.kind in ("buildtool", "build")}
+        types = {t for t, _ in manifest.build_types}
+        if any(t.startswith("ament") or t == "ros2" for t in tools | types):
+            two += 1
+    return 2 if two * 2 >= total and two else 1

@@ -779,11 +779,11 @@ class _Join:
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
-        assigning = vocabulary.words & ASSIGNING.keys()
+        assigning = vocabulary.looked_for(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.words & spoken[path] | assigning if path in spoken else set()
+            words = vocabulary.looked_for(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
             has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
             if not words and not has_exported:
                 continue

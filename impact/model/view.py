@@ -12,6 +12,7 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ...edges.reach import Reach
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
@@ -19,7 +20,7 @@ from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, Row
-from ..targets.evidence import Evidence
+from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import Machine, machine, machine_of
@@ -130,6 +131,10 @@ class View:
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
+        self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
+        self._reach_of_headers = Reach(self._look_at_header)
+        # Of what was reached: headers of the workspace, and with them those that it generates.
+        self._own_headers = self._owned = 0
         self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
         self._lost: dict[str, Availability | None] = {}
@@ -317,23 +322,37 @@ class View:
         that it generates from interfaces are among both."""
         known = self._outward_of.get(paths)
         if known is None:
-            found, own, stack = set(), set(), list(paths)
-            while stack:
-                path = stack.pop()
-                if path in found or path in own:
-                    continue
-                files = self._files_of(path)
-                (own if files else found).add(path)
-                inner = () if files else self._made_of(path)
-                if inner:
-                    own.add(path)
-                    stack.extend(inner)
-                for file in files:
-                    own.add(f"/{file}".rpartition("/include/")[2])
-                    stack.extend(self._outward.get(file, ()))
-                    stack.extend(self._inner.get(file, ()))
-            known = self._outward_of[paths] = frozenset(found), frozenset(own)
+            reached = along = 0
+            for path in paths:
+                leads, beside = self._reach_of_headers.masks(path)
+                reached |= leads
+                along |= beside
+            known = self._outward_of[paths] = self._outward_by_masks(reached, along)
         return known
+
+    def _outward_by_masks(self, reached: int, along: int) -> tuple[frozenset[str], frozenset[str]]:
+        """What outward() says where an include leads to these headers. One answer is one object, so that joins of it
+        are found again at once."""
+        masks = reached & ~self._own_headers, reached & self._owned | along
+        known = self._outward_sets.get(masks)
+        if known is None:
+            found, own = (frozenset(self._reach_of_headers.names(mask)) for mask in masks)
+            known = self._outward_sets[masks] = found, own
+        return known
+
+    def _look_at_header(self, path: str) -> tuple[list[str], list[str]]:
+        """What an include path leads to, and the paths of its files as others write them."""
+        bit, files = self._reach_of_headers.bit(path), self._files_of(path)
+        inner = () if files else self._made_of(path)
+        if files:
+            self._own_headers |= bit
+        if files or inner:
+            self._owned |= bit
+        leads = list(inner)
+        for file in files:
+            leads += self._outward.get(file, ())
+            leads += self._inner.get(file, ())
+        return leads, [f"/{file}".rpartition("/include/")[2] for file in files]
 
     def _made_of(self, path: str) -> tuple[str, ...]:
         """The generated headers that one which the workspace generates includes, itself first; none for others."""

@@ -29,7 +29,7 @@ from ..targets.surface.fields import snake
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
-from .discovery import Discovered, PackagePlace, discover
+from .discovery import Discovered, PackagePlace, discover, generation, manifest_at
 from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
 
@@ -111,11 +111,14 @@ class Workspace:
         gathered: Gathered,
         read: Callable[[str], bytes],
         identity: bytes = b"",
+        whole: bool = True,
     ):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
         # Differs whenever a digest, their order or the generation does.
         self.identity = identity
+        # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
+        self.whole = whole
         self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
         self._provided: dict[str, list[str]] = {}
         # What later joins made of it, each under its own type.
@@ -389,30 +392,7 @@ def link(
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
-    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest())
-
-
-def _manifest(gathered: Gathered, path: str) -> Manifest | None:
-    if path not in gathered.kinds:
-        return None
-    facts = gathered.facts(path).facts
-    return facts if isinstance(facts, Manifest) else None
-
-
-def generation(discovered: Discovered, gathered: Gathered) -> int:
-    """1 or 2: which ROS generation most packages of the tree are written for."""
-    two = 0
-    total = 0
-    for place in discovered.packages:
-        manifest = _manifest(gathered, place.manifest_path)
-        if manifest is None:
-            continue
-        total += 1
-        tools = {d.name for d in manifest.dependencies if d.kind in ("buildtool", "build")}
-        types = {t for t, _ in manifest.build_types}
-        if any(t.startswith("ament") or t == "ros2" for t in tools | types):
-            two += 1
-    return 2 if two * 2 >= total and two else 1
+    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest(), linker.whole)
 
 
 def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
@@ -473,11 +453,12 @@ class _Linker:
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
+        self.whole = True
         self.code = f"{source_key(__name__)} {version_of_all()}"
         self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
-        places = [p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path) is not None]
+        places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
         keys = {p.path: self.key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(Digest)
         remembered = store.memos("digest", list(keys.values())) if store is not None else {}
@@ -497,7 +478,9 @@ class _Linker:
                     found[place.path] = _Joined(before, packed, None)
                 else:
                     stale[place.path] = before
-        found.update(self.joined([p for p in places if p.path not in found], stale))
+        made = dict(self.joined([p for p in places if p.path not in found], stale))
+        self.whole = all(one.packed and one.head is not None for one in made.values())
+        found.update(made)
         fresh: list[tuple[bytes, bytes]] = []
         for place in places:
             digest, packed, head = found[place.path]
@@ -559,7 +542,7 @@ class _Linker:
 
     def failed(self, place, reason: str) -> Digest:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
-        manifest = _manifest(self.gathered, place.manifest_path)
+        manifest = manifest_at(self.gathered, place.manifest_path)
         assert manifest is not None
         why = f"the package could not be analysed: {reason}"
         return Digest(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros), Build(),
@@ -585,7 +568,7 @@ class _Linker:
         not count here."""
         stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
         kinds = self.gathered.kinds
-        places = (p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path))
+        places = (p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path))
         return frozenset(
             p.name
             for p in places
@@ -602,7 +585,7 @@ class _Linker:
         """The digest of a package, and the CMake files of others that it rests on. before: a digest of the very same
         files of its own; where the others still say the same, it holds."""
         gathered = self.gathered
-        manifest = _manifest(gathered, place.manifest_path)
+        manifest = manifest_at(gathered, place.manifest_path)
         assert manifest is not None
         files = self.paths_of[place.path]
         gathered.preload(files)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..rules.rule import Finding
-from ..targets.evidence import Evidence, OnTarget
+from ..targets.evidence_record import Evidence, OnTarget
 
 _MOST_DECLARATIONS = 2
 _MOST_TARGETS = 5

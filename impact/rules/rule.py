@@ -38,7 +38,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
-from ..targets.evidence import Evidence
+from ..targets.evidence_record import Evidence
 from .fix_actions import Declare, Insert, Remove, Replace
 from .severity import Doubt, Together, severity
 from .text import Text, Value

@@ -14,10 +14,12 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..facts.condition import Condition
-from ..model.view import View
+
+if TYPE_CHECKING:
+    from ..model.view import View
 
 
 class Doubt(enum.Enum):

@@ -15,7 +15,8 @@ from functools import cache, cached_property
 
 from .changes import DISTROS, Row, all_rows, reached, removed_in, version_of
 from .distro.known import known_distros
-from .evidence import Evidence, evidence_of, of_offered
+from .evidence import evidence_of, of_offered
+from .evidence_record import Evidence
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER
 from .surface.fields import before, default_fields, there

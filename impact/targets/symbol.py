@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
-    from .evidence import Evidence
+    from .evidence_record import Evidence
     from .target import Target
 
 State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]

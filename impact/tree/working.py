@@ -254,6 +254,13 @@ class WorkingTree(Walked):
                 known = self._ids[path] = remembered[1]
         return known
 
+    def state(self, path: str) -> object | None:
+        """What tells the content of a file that was walked from what it was at other times, without reading it; None
+        where it may still change without its time stamp showing it."""
+        stamp = self._stats[path]
+        known = self.known_id(path)
+        return known or (stamp if max(stamp[1], stamp[3]) < time.time_ns() - RACY_NS else None)
+
     def content_id(self, path: str) -> str:
         return self.known_id(path) or self.read_with_id(path)[1]
 

@@ -96,7 +96,7 @@ def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    words = [word for word in sorted(vocabulary.words) if word in text or word in ASSIGNING]
+    words = [word for word in sorted(vocabulary.looked_for(vocabulary.words)) if word in text or word in ASSIGNING]
     found = ApiUses(resolver(text, vocabulary, *headers), {"arm", "leg"}).found(words)
     told = []
     for use in sorted(found, key=lambda use: use.offset):
@@ -285,7 +285,8 @@ def test_the_type_of_a_parameter(parameter, type_):
 
 DRILL = "class Drill {{ public: void spin(int a{0}); }};"
 BOX = """class Box {{ public: void close({0}); std::shared_ptr<Drill> drill() const;
-std::shared_ptr<const Drill> drill(); Drill first; typedef Drill Any; template<class T> Drill pick(); std::vector<Drill> all(); {1} other(); }};
+std::shared_ptr<const Drill> drill(); Drill first; typedef Drill Any; template<class T> Drill pick();
+std::vector<Drill> all(); {1} other(); }};
 class Chest : public Box {{}};"""
 WORKSHOP = (
     f"namespace shop {{ {DRILL.format('')} {BOX.format('', 'Drill')} }}",

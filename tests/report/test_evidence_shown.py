@@ -8,7 +8,7 @@ from rosimpact.impact.report import evidence, github, html, markdown, sarif, tex
 from rosimpact.impact.report import json as json_report
 from rosimpact.impact.report.style import PLAIN
 from rosimpact.impact.rules.rule import Finding
-from rosimpact.impact.targets.evidence import Evidence, OnTarget
+from rosimpact.impact.targets.evidence_record import Evidence, OnTarget
 
 jsonschema = pytest.importorskip("jsonschema")
 

@@ -5,7 +5,8 @@ from rosimpact.impact.targets import evidence as module
 from rosimpact.impact.targets.changes import changes_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.distro.known import releases
-from rosimpact.impact.targets.evidence import Evidence, evidence_of, from_surfaces, of_offered, released_before, seen_on
+from rosimpact.impact.targets.evidence import evidence_of, from_surfaces, of_offered, released_before, seen_on
+from rosimpact.impact.targets.evidence_record import Evidence
 from rosimpact.impact.targets.providers.providers import default_providers
 from rosimpact.impact.targets.surface.changes import Event, Line, Told
 from rosimpact.impact.targets.surface.offers import Offered

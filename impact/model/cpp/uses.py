@@ -278,7 +278,7 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
-        virtual = {word for word in words & self.vocabulary.virtual if code.may_declare(word)}
+        virtual = {word for word in words if self.vocabulary.is_virtual(word) and code.may_declare(word)}
         for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import posixpath
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from ....edges.dispatch import methods_of
@@ -96,6 +97,8 @@ class Filling:
 
     def substituted(self, entry: Entry) -> Entry:
         """An entry whose keys or values hold substitutions, filled in where that can be done."""
+        if not isinstance(entry.value, list | dict) and "$(" not in f"{entry.path}{entry.value}":
+            return entry
         path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
         return Entry(path, self.filled_value(entry.value), entry.line)
 
@@ -382,7 +385,8 @@ _PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewr
 def _rewritten(entries: Sequence[Entry], rewrite: Rewrite) -> tuple[Entry, ...]:
     """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
     if rewrite.is_text:
-        return tuple(_replaced(entry, rewrite.changes) for entry in entries)
+        change = _change_of(rewrite.changes)
+        return tuple(_replaced(entry, change) for entry in entries)
     changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
     root = (rewrite.root.value,) if rewrite.root.value else ()
     made: list[Entry] = []
@@ -395,13 +399,20 @@ def _rewritten(entries: Sequence[Entry], rewrite: Rewrite) -> tuple[Entry, ...]:
     return tuple(made)
 
 
-def _replaced(entry: Entry, changes: tuple[tuple[Text, Text], ...]) -> Entry:
+def _change_of(changes: tuple[tuple[Text, Text], ...]) -> Callable[[str], str]:
+    """What makes these changes in a text. The same keys stand in most entries of a file."""
+
+    @cache
     def change(text: str) -> str:
         for old, new in changes:
             if old.value:
                 text = text.replace(old.value, new.value if new.value is not None else new.shown)
         return text
 
+    return change
+
+
+def _replaced(entry: Entry, change: Callable[[str], str]) -> Entry:
     value = entry.value
     if isinstance(value, str):
         # The text is changed before it is read as YAML, so that what comes of it may be a number or a bool.
@@ -409,5 +420,5 @@ def _replaced(entry: Entry, changes: tuple[tuple[Text, Text], ...]) -> Entry:
         value = value if changed == value else scalar(changed)
     elif isinstance(value, list):
         value = [change(item) if isinstance(item, str) else item for item in value]
-    path = tuple(part for key in entry.path for part in [change(key)] if part)
+    path = tuple(filter(None, map(change, entry.path)))
     return Entry(path, value, entry.line)

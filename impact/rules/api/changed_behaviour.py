@@ -31,7 +31,7 @@ from ...model.workspace import Package
 from ...targets.changes import Row, all_uses, behaves_differently
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
-from ...targets.evidence import Evidence
+from ...targets.evidence_record import Evidence
 from ..rule import Diagnostic, rule
 from ..text import Text
 from .diagnosis import is_of_another_distro

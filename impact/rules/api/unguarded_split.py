@@ -29,7 +29,7 @@ Not reported
 from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import At
-from ...targets.evidence import Evidence
+from ...targets.evidence_record import Evidence
 from ..rule import Diagnostic, Finding, rule
 from ..text import Text
 

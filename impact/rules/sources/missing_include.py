@@ -210,8 +210,11 @@ def _dropped(
 ) -> tuple[str, str] | None:
     """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
     for before in earlier:
+        bits = before.bits(wanted)
+        if not bits & before.mask(reach):
+            continue
         for header in sorted(reach):
-            if not wanted.isdisjoint(before.brought(header).headers):
+            if bits & before.mask(frozenset((header,))):
                 if view.is_standard(header):
                     return "gcc", machine.version("gcc") or ""
                 return machine.owner(header)

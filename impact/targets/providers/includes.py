@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
+from ....edges.reach import Reach
 from ..snapshot import DATA, SnapshotError
 from ..version import at_least, parts
 from . import message_headers
@@ -169,15 +170,16 @@ class Machine:
         self._stored: dict[str, tuple[Included, str, str] | None] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
         self._holding: dict[tuple[Condition, ...], bool] = {}
-        self._closures: dict[str, Brought] = {}
-        self._outside: dict[frozenset[str], frozenset[str]] = {}
-        self._alone: dict[str, int] = {}
-        self._masks: dict[frozenset[str], int] = {}
-        self._telling: dict[str, bool] = {}
-        self._bits: dict[str, int] = {}
         self._versions: dict[str, str | None] = {}
+        self._reach = Reach(self._look)
+        # Of what was reached: headers of the standard libraries, and those of which nothing is known here.
+        self._plain = self._unknown = 0
+        # The headers that tells() was asked of, and those that it denies.
+        self._asked = self._silent = 0
+        self._masks: dict[frozenset[str], tuple[int, int]] = {}
+        self._brought: dict[str, Brought] = {}
+        self._outside: dict[frozenset[str], frozenset[str]] = {}
         self._named: dict[tuple[frozenset[str], int], int] = {}
-        self._named_alone: dict[tuple[str, int], int] = {}
 
     def version(self, owner: str) -> str | None:
         """The version of an owner here."""
@@ -348,44 +350,40 @@ class Machine:
 
     def brought(self, header: str) -> Brought:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
-        known = self._closures.get(header)
+        known = self._brought.get(header)
         if known is None:
-            seen, outside, plain, stack = {header}, set(), set(), [header]
-            while stack:
-                at = stack.pop()
-                if at in self._closures:
-                    seen |= self._closures[at].headers
-                    outside |= self._closures[at].outside
-                    plain |= self._closures[at].standard
-                    continue
-                found = self.includes(at)
-                if found is None:
-                    standard = brought_by(at, self.gcc)
-                    seen |= standard
-                    if named_by(at, self.gcc, 2017) is not None:
-                        plain.add(at)
-                    elif len(standard) == 1:
-                        outside.add(at)
-                    continue
-                for path in found:
-                    if path not in seen:
-                        seen.add(path)
-                        stack.append(path)
-            known = self._closures[header] = Brought(frozenset(seen), frozenset(outside), frozenset(plain))
+            reached, along = self._reach.masks(header)
+            parts = (reached | along, reached & self._unknown, reached & self._plain)
+            known = self._brought[header] = Brought(*(frozenset(self._reach.names(mask)) for mask in parts))
+        return known
+
+    def _look(self, header: str) -> tuple[Iterable[str], Iterable[str]]:
+        """The headers that one includes, or all that a standard one reads."""
+        found = self.includes(header)
+        if found is not None:
+            return found, ()
+        standard = brought_by(header, self.gcc)
+        if named_by(header, self.gcc, 2017) is not None:
+            self._plain |= self._reach.bit(header)
+        elif len(standard) == 1:
+            self._unknown |= self._reach.bit(header)
+        return (), standard
+
+    def _masks_of(self, headers: frozenset[str]) -> tuple[int, int]:
+        """The headers that these lead to, and with them those that standard ones among them read."""
+        known = self._masks.get(headers)
+        if known is None:
+            reached = whole = 0
+            for header in headers:
+                alone, along = self._reach.masks(header)
+                reached |= alone
+                whole |= along
+            known = self._masks[headers] = reached, whole | reached
         return known
 
     def mask(self, headers: frozenset[str]) -> int:
         """Everything that these headers bring along here, as bits() has it."""
-        known = self._masks.get(headers)
-        if known is None:
-            known = 0
-            for header in headers:
-                alone = self._alone.get(header)
-                if alone is None:
-                    alone = self._alone[header] = self.bits(self.brought(header).headers)
-                known |= alone
-            self._masks[headers] = known
-        return known
+        return self._masks_of(headers)[1]
 
     def named(self, headers: frozenset[str], standard: int) -> int:
         """The names of the standard libraries that these headers bring along here, as bits of standard.bit_of().
@@ -394,14 +392,9 @@ class Machine:
         known = self._named.get((headers, standard))
         if known is None:
             known = 0
-            for header in headers:
-                alone = self._named_alone.get((header, standard))
-                if alone is None:
-                    alone = 0
-                    for plain in self.brought(header).standard:
-                        alone |= named_by(plain, self.gcc, standard) or 0
-                    self._named_alone[header, standard] = alone
-                known |= alone
+            reached, _ = self._masks_of(headers)
+            for header in self._reach.names(reached & self._plain):
+                known |= named_by(header, self.gcc, standard) or 0
             self._named[headers, standard] = known
         return known
 
@@ -422,7 +415,8 @@ class Machine:
         """The headers among all that these bring along of which nothing is known here."""
         known = self._outside.get(headers)
         if known is None:
-            known = self._outside[headers] = frozenset().union(*(self.brought(header).outside for header in headers))
+            reached, _ = self._masks_of(headers)
+            known = self._outside[headers] = frozenset(self._reach.names(reached & self._unknown))
         return known
 
     def tells(self, header: str) -> bool:
@@ -435,20 +429,16 @@ class Machine:
 
     def tells_all(self, headers: frozenset[str]) -> bool:
         """Whether it tells of all generated headers that these bring along."""
-        for header in headers:
-            if header not in self._telling:
-                self._telling[header] = all(map(self.tells, self.brought(header).headers))
-        return all(self._telling[header] for header in headers)
+        mask = self.mask(headers)
+        fresh = mask & ~self._asked
+        if fresh:
+            self._asked |= fresh
+            self._silent |= self.bits(header for header in self._reach.names(fresh) if not self.tells(header))
+        return not mask & self._silent
 
     def bits(self, headers: Iterable[str]) -> int:
         """One bit for each of these headers, the same in all answers of this machine."""
-        found = 0
-        for header in headers:
-            known = self._bits.get(header)
-            if known is None:
-                known = self._bits[header] = 1 << len(self._bits)
-            found |= known
-        return found
+        return self._reach.bits(headers)
 
 
 def machine(target: Target) -> Machine:

@@ -79,7 +79,10 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         lies there, else as it is written."""
         if include.angled and self._row(include.path, version) is not None:
             return include.path
-        beside = posixpath.normpath(posixpath.join(posixpath.dirname(header), include.path))
+        folder, slash, _ = header.rpartition("/")
+        beside = f"{folder}{slash}{include.path}"
+        if "./" in beside or "//" in beside:
+            beside = posixpath.normpath(posixpath.join(folder, include.path))
         return beside if self._row(beside, version) is not None else include.path
 
 

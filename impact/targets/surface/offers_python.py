@@ -13,7 +13,7 @@ from typing import Any
 
 from ...facts.python.surface import Parameter, parameters_of
 from ...facts.python.uses import Given, PythonUse
-from ..evidence import Evidence
+from ..evidence_record import Evidence
 from ..symbol import Availability, State, Symbol
 from .offers import Offer, Offers
 from .python import UNKNOWN, Entry, Names, signature, wrapped

@@ -60,6 +60,16 @@ class About(NamedTuple):
 _OWN = frozenset({"targets", "libraries", "commands", "programs", "plugins", "launches", "headers"})
 
 
+@cache
+def _fields_of_build() -> dict[str, Any]:
+    """The types of those fields of a BuildSurface that hold several values."""
+    from .surface import BuildSurface
+
+    empty = BuildSurface("")
+    fields = msgspec.structs.fields(BuildSurface)
+    return {field.name: field.type for field in fields if isinstance(getattr(empty, field.name), tuple)}
+
+
 class History:
     """All stored versions of one package of one ROS generation, oldest first. approximate: those that a branch stood
     for."""
@@ -109,10 +119,9 @@ class History:
         build: dict[str, list[Any]] = {}
         for scope, value in self._values("build", version):
             build.setdefault(scope, []).append(value)
-        known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
-        empty = BuildSurface("")
+        known = _fields_of_build()
         given = {
-            name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
+            name: msgspec.convert(values, known[name]) if name in known else values[-1]
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)

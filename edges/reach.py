@@ -1,0 +1,98 @@
+"""Everything that can be reached in a graph of names, kept as one bit for each name: unions of thousands of names then
+cost next to nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+# The names that a name leads to, and names that come along with it and lead nowhere.
+_Look = Callable[[str], tuple[Iterable[str], Iterable[str]]]
+
+
+class Reach:
+    """A graph that is looked at when it is asked for, every name once. look: what a name leads to."""
+
+    def __init__(self, look: _Look):
+        self._look = look
+        self._names: list[str] = []
+        self._bits: dict[str, int] = {}
+        self._masks: dict[str, tuple[int, int]] = {}
+
+    def bit(self, name: str) -> int:
+        """The bit that stands for a name."""
+        known = self._bits.get(name)
+        if known is None:
+            known = self._bits[name] = 1 << len(self._names)
+            self._names.append(name)
+        return known
+
+    def bits(self, names: Iterable[str]) -> int:
+        """The bits of several names."""
+        found = 0
+        for name in names:
+            found |= self.bit(name)
+        return found
+
+    def names(self, mask: int) -> Iterator[str]:
+        """The names whose bits a mask has."""
+        while mask:
+            lowest = mask & -mask
+            yield self._names[lowest.bit_length() - 1]
+            mask ^= lowest
+
+    def masks(self, name: str) -> tuple[int, int]:
+        """The names that one leads to over any number of steps, itself included, and those that come along with them.
+
+        By Tarjan's algorithm: names that lead to each other have the same masks."""
+        known = self._masks.get(name)
+        if known is not None:
+            return known
+        masks = self._masks
+        order: dict[str, int] = {}
+        low: dict[str, int] = {}
+        component: list[str] = []
+        path: list[_Step] = []
+        waiting: str | None = name
+        while True:
+            if waiting is not None:
+                order[waiting] = low[waiting] = len(order)
+                component.append(waiting)
+                leads, along = self._look(waiting)
+                path.append(_Step(waiting, iter(leads), self.bit(waiting), self.bits(along)))
+                waiting = None
+            step = path[-1]
+            for to in step.leads:
+                known = masks.get(to)
+                if known is not None:
+                    step.reached |= known[0]
+                    step.along |= known[1]
+                elif to not in order:
+                    waiting = to
+                    break
+                elif order[to] < low[step.name]:
+                    low[step.name] = order[to]
+            if waiting is not None:
+                continue
+            path.pop()
+            if low[step.name] == order[step.name]:
+                found = step.reached, step.along
+                while True:
+                    member = component.pop()
+                    masks[member] = found
+                    if member == step.name:
+                        break
+            if not path:
+                return masks[name]
+            above = path[-1]
+            above.reached |= step.reached
+            above.along |= step.along
+            low[above.name] = min(low[above.name], low[step.name])
+
+
+class _Step:
+    """A name on the way, what of it was not looked at yet, and the bits that were found."""
+
+    __slots__ = ("along", "leads", "name", "reached")
+
+    def __init__(self, name: str, leads: Iterator[str], reached: int, along: int):
+        self.name, self.leads, self.reached, self.along = name, leads, reached, along

@@ -1,0 +1,188 @@
+"""What a whole check reported, remembered by everything that it rests on: content, data, settings and our own code.
+
+A second run on unchanged files links nothing, runs no rule and does not even load them. The key is made of content ids
+where they are known, and of the state of a file where nothing has read it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import time
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import msgspec
+from msgspec import structs
+
+from ...edges.version import __version__
+from ..facts.store import encodable
+from ..rules.rule import Finding, Rule
+from ..source_keys import code_stamp
+from ..targets.evidence_record import Evidence
+from ..targets.snapshot import data_stamp, updated_folder
+from ..tree import WorkingTree
+from ..tree.paths import blob_id
+from .report import Checked, Coverage, Report, ReportedPackage, Sources, report_target
+from .session import Options, Read, make_reader, select_rules
+from .stored_fix import PackedFix, pack_fix, unpack_fix
+
+if TYPE_CHECKING:
+    from ..config import Config
+    from ..facts.store import Store
+
+class _Found(msgspec.Struct, frozen=True, array_like=True):
+    """A finding as stored: the fields of Finding in their order, its fix packed."""
+
+    rule: str
+    severity: str
+    package: str
+    path: str
+    line: int
+    column: int
+    subject: str
+    targets: tuple[str, ...]
+    message: str
+    help: str
+    new: bool
+    fingerprint: str
+    fix: PackedFix
+    evidence: Evidence | None
+    repeated: bool
+
+    def finding(self) -> Finding:
+        """The finding. Raises as unpack_fix() does."""
+        return Finding(*structs.astuple(self))._replace(fix=unpack_fix(self.fix))
+
+
+def _pack(findings: Sequence[Finding]) -> tuple[_Found, ...]:
+    return tuple(_Found(*finding._replace(fix=pack_fix(finding.fix))) for finding in findings)  # type: ignore[arg-type]
+
+
+class _Kept(msgspec.Struct, frozen=True, array_like=True):
+    """A report as stored. rules: names of those that could speak. originals: files that fixes change, with the ids of
+    their content."""
+
+    findings: tuple[_Found, ...]
+    suppressed: tuple[_Found, ...]
+    known: tuple[_Found, ...]
+    coverage: Coverage
+    packages: tuple[ReportedPackage, ...]
+    rules: tuple[str, ...]
+    originals: tuple[tuple[str, str], ...]
+
+
+class _RulesNamed(Sequence):
+    """Rules by their names, loaded when they are asked for."""
+
+    def __init__(self, names: Sequence[str]):
+        self._names = names
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __getitem__(self, at):
+        from ..rules.rule import all_rules
+
+        known = all_rules()
+        return tuple(known[name] for name in self._names)[at]
+
+    def __iter__(self) -> Iterator[Rule]:
+        return iter(self[:])
+
+
+def asks_flow(config: Config, store: Store, options: Options) -> bool:
+    """Whether some of the rules to run read the message flow; remembered, since telling takes all rules. Raises as
+    select_rules() does."""
+    asked = (code_stamp(), options.select, options.ignore, options.preview, config.select, config.ignore)
+    key = hashlib.sha1(repr(asked).encode("utf-8", "surrogateescape")).digest()
+    known = store.memo("asks flow", key)
+    if known is None:
+        known = b"1" if any(rule.reads_flow for rule in select_rules(options, config).values()) else b""
+        store.remember("asks flow", [(key, known)])
+    return bool(known)
+
+
+def report_key(read: Read, options: Options) -> bytes | None:
+    """The key of a check's report; None where it may rest on more than what is told here: revisions, installed files,
+    files outside of the workspace that its settings name, and files that were written just now."""
+    tree, config = read.tree, read.config
+    outside = (config.underlays, config.repos, config.rosdep_sources, config.index, options.install, options.base)
+    if any(outside) or not isinstance(tree, WorkingTree):
+        return None
+    asked = (options.select, options.ignore, options.preview, options.follow_links, options.baseline)
+    targets = [(chosen.target.identity(), chosen.target.name, chosen.reason) for chosen in read.targets]
+    found = hashlib.sha1()
+
+    def add(*parts: object) -> None:
+        found.update(repr(parts).encode("utf-8", "backslashreplace"))
+
+    add(code_stamp(), data_stamp(), _updated_data(), asked, config, read.ros, targets, tree.root)
+    add(tree.problems, tree.skipped, tree.aliases, tree.repositories, read.gathered.problems)
+    add(read.discovered.packages, read.discovered.ignored, read.discovered.problems)
+    ids = read.gathered.ids
+    kinds = read.gathered.kinds
+    for entry in tree.entries():
+        content = ids.get(entry.path)
+        state = content or tree.state(entry.path)
+        if state is None:
+            return None
+        add(entry.path, kinds.get(entry.path), state)
+    return found.digest()
+
+
+def _updated_data() -> list[tuple[str, int, int]]:
+    """The state of the data that a user has updated."""
+    with contextlib.suppress(OSError), os.scandir(updated_folder()) as entries:
+        return sorted((entry.name, (status := entry.stat()).st_size, status.st_mtime_ns) for entry in entries)
+    return []
+
+
+def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: float) -> Checked | None:
+    """The check of an earlier run that rests on the same; None when there is none. key: a report_key(). started: when
+    the work began, by time.perf_counter()."""
+    data = read.store.memo("report", key)
+    if data is None:
+        return None
+    try:
+        kept = msgspec.msgpack.decode(data, type=_Kept)
+        findings, suppressed, known = (
+            tuple(one.finding() for one in those) for those in (kept.findings, kept.suppressed, kept.known)
+        )
+        originals = {file: read.tree.read(file) for file, _ in kept.originals}
+    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError, OSError):
+        return None
+    if any(blob_id(originals[file]) != content for file, content in kept.originals):
+        return None  # it has just been written to
+    notes, targets = read.store.notes, read.targets
+    report = Report(
+        version=__version__,
+        data=targets[0].target.data_date if targets else "",
+        targets=tuple(report_target(chosen, notes if i == 0 else ()) for i, chosen in enumerate(targets)),
+        findings=findings,
+        coverage=kept.coverage,
+        packages=kept.packages,
+        suppressed=suppressed,
+        known=known,
+        rules=_RulesNamed(kept.rules),
+        seconds=time.perf_counter() - started,
+        excerpt=Sources(make_reader(read.tree)).excerpt,
+        root=os.fspath(path),
+    )
+    return Checked(report, read.config, read.tree, originals)
+
+
+def store_report(read: Read, key: bytes, checked: Checked) -> None:
+    """Keeps a report for later runs. key: the report_key() of what it was made from."""
+    report = checked.report
+    kept = _Kept(
+        _pack(report.findings),
+        _pack(report.suppressed),
+        _pack(report.known),
+        report.coverage,
+        report.packages,
+        tuple(rule.name for rule in report.rules),
+        tuple((file, blob_id(data)) for file, data in checked.originals.items()),
+    )
+    read.store.remember("report", encodable([(key, kept)]))
