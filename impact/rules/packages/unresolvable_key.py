@@ -30,6 +30,7 @@ from ...model.misspelling import nearest, one_edit
 from ...model.view import View
 from ..fix_actions import Remove, Replace
 from ..rule import Diagnostic, rule
+from ..severity import Doubt
 from ..text import Text
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"
@@ -79,7 +80,7 @@ def unresolvable_key(view: View):
             elif longer := _parts_of(view, name):
                 yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
             else:
-                yield Diagnostic(at, name, package.name, kind="unknown", severity="note")
+                yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
 
 
 def _parts_of(view: View, name: str) -> list[str]:
