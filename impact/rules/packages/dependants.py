@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import found_with, package_of
+from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
 
@@ -32,7 +32,7 @@ def links_without(view: View, package: Package, target: BuildTarget, needed: str
         found = {f.name for f in other.build.found if view.active(f.conditions)}
         if any("$" in name for name in found) or any(f.how == "ament_auto" for f in other.build.found):
             continue
-        if names.isdisjoint(name.lower() for name in found_with(view, found)):
+        if names.isdisjoint(name.lower() for name in view.roles.found_with(found)):
             return True
     return False
 
