@@ -4,9 +4,8 @@ What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
     renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
     generated headers whose interface the version lacks, no version has, or another package of the workspace has; own
-    headers with a letter wrong; spellings of generated headers that belong to the other ROS generation, or to C where
-    rclcpp is used; headers of generate_parameter_library by a path that its version does not make, or does not install;
-    and paths that name the folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
+    headers with a letter wrong; and spellings of generated headers that belong to the other ROS generation, or to C
+    where rclcpp is used.
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
@@ -15,10 +14,9 @@ Severity
     error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
     the build farm builds against already), and for an installed header that includes what nobody has, so that nobody
     can compile it; warning for tests of ROS 1, under CMake conditions that are not known, for the first include of each
-    header that goes with a later update or on the newest distro's platform, for headers of C where nothing else brings
-    the C++ types, for installed headers that include what is not installed, and once in a package for a path through
-    the folder of a version that is there, since another machine may have it elsewhere; note for its other includes, for
-    examples, for installed headers that the package does not compile itself, and under other tests of the code itself.
+    header that goes with a later update or on the newest distro's platform, and for headers of C where nothing else
+    brings the C++ types; note for its other includes, for examples, for installed headers that the package does not
+    compile itself, and under other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -44,15 +42,14 @@ from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Symbol
 from ...targets.target import Change
 from ..rule import Diagnostic, rule
-from ..severity import Doubt, Repeats, doubts_of_place
+from ..severity import Doubt, doubts_of_place
 from ..text import Text
 from ..upcoming import Upcoming, rate_upcoming
 from .diagnosis import availability_texts, diagnose
 from .interface_headers import TEXTS as INTERFACE_TEXTS
 from .interface_headers import doubts_of_c_header, find_interface_fault
 from .moved_header import respell
-from .parameter_headers import TEXTS as PARAMETER_TEXTS
-from .parameter_headers import ParameterHeaders
+from .parameter_header import ParameterHeaders
 
 _INCLUDE = "[[include `{replacement}`]]"
 
@@ -62,13 +59,10 @@ _INCLUDE = "[[include `{replacement}`]]"
     severity="error",
     texts={
         **availability_texts("include"),
-        **PARAMETER_TEXTS,
         **INTERFACE_TEXTS,
         "broken": Text("no package of the workspace has or generates `{subject}`"),
         "platform": Text("no package of {upstream} has `{subject}`"),
         "nested": Text("`{subject}` is not installed by {upstream} {version}", _INCLUDE),
-        "folder": Text("`{folder}/` is where this platform installs {upstream} {version}; others may not", _INCLUDE),
-        "other folder": Text("`{subject}` is not available with {upstream} {version}", _INCLUDE),
         "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
     },
 )
@@ -98,27 +92,18 @@ class _Rows:
 
 
 def _list_removed(view: View, package: Package, rows: _Rows) -> Iterator[Diagnostic | Upcoming]:
-    repeats = Repeats()
     for include in package.digest.includes:
         path = include.path
         if path in rows.quiet or not view.active(include.conditions):
             continue
-        if (of_parameters := rows.parameters.diagnose(package, include)) is not None:
-            yield of_parameters
-            continue
+        if rows.parameters.find_fault(include) or versioned_folder(view.target, path) is not None:
+            continue  # which rules of their own report
         if view.workspace.provides_header(path):
             rows.quiet.add(path)
             continue
         doubts = doubts_of_place(view, include.role, include.conditions)
         if not include.targets:
             doubts = (*doubts, Doubt.UNCOMPILED)
-        folder = versioned_folder(view.target, path)
-        if folder is not None:
-            data = {"upstream": folder.library, "version": folder.version, "replacement": folder.path}
-            data["folder"] = path.partition("/")[0]
-            kind, bad = ("folder", repeats.severity(path, *doubts, Doubt.DISTURBS)) if folder.there else ("", "")
-            yield Diagnostic(include.at, path, package.name, data, kind or "other folder", doubts, bad)
-            continue
         yield from _of_release(view, package, include, rows, doubts)
 
 
