@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...targets.providers.library import standard_year
 from ...targets.version import at_least
 from .build import At, BuildTarget, Link, for_tests
 
@@ -93,36 +92,3 @@ def list_given_names(view: View, package: Package) -> Iterator[tuple[At, str]]:
                 continue
             if link.how == "ament" and view.is_package(link.item):
                 yield link.at, link.item
-
-
-def standards_asked(view: View, package: Package) -> dict[str, int]:
-    """The years of the C++ standards that targets are compiled under at least: each one's own, and those that what it
-    links asks of its users, in the package, the workspace and the released packages of the target."""
-    targets = {target.name: target for target in package.build.targets}
-    found: dict[str, int] = {}
-    for target in targets.values():
-        year, waiting, seen = standard_year(target.standard) if target.standard else 0, [target.name], set()
-        others: set[str] = set()
-        while waiting:
-            own = targets.get(waiting.pop())
-            if own is None or own.name in seen:
-                continue
-            seen.add(own.name)
-            if own.public_standard:
-                year = max(year, standard_year(own.public_standard))
-            waiting.extend([own.alias_of] if own.alias_of else [])
-            for link in own.links:
-                if link.how in ("link", "ament", "interfaces"):
-                    waiting.append(link.item)
-                    others.add(package_of(link.item))
-        if "catkin" in others:
-            others.update(f.name for f in package.build.found if f.how == "catkin")
-        for name in view.roles.found_with(others - targets.keys()) if others else ():
-            other = view.workspace.packages.get(name)
-            asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
-                view.offers.standard(name)
-            )
-            year = max(year, standard_year(asked) if asked else 0)
-        if year:
-            found[target.name] = year
-    return found
