@@ -27,9 +27,6 @@ from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
 
-# Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
-_FIND_MODULES = frozenset({"Eigen", "NUMPY", "TBB", "TinyXML", "TinyXML2", "UUID", "Xenomai", "GSL"})
-
 
 @rule(
     scope="target",
@@ -53,7 +50,7 @@ def _list_unfound(view: View, package):
     names = {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:
-        if found.name not in _FIND_MODULES or found.how != "find_package" or f"Find{found.name}.cmake" in own:
+        if found.how != "find_package" or f"Find{found.name}.cmake" in own or not _is_brought(view, found.name):
             continue
         if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
             continue
@@ -78,3 +75,8 @@ def _lacks_eigen(view: View, package) -> bool:
         and need.role == "build" and need.certain and not view.answered(need.providers, reached)
         for need in view.needs(package)
     )  # fmt: skip
+
+
+def _is_brought(view: View, name: str) -> bool:
+    """Whether cmake_modules has a find module of this name."""
+    return any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.cmake(name))

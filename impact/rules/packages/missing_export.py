@@ -37,7 +37,6 @@ from ..severity import EXPORTED, Doubt, Repeats
 from ..text import Text
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import links_without
-from .ungiven_package import ONE_FOLDER
 
 _ADD = "add `{subject}` to ament_export_dependencies"
 
@@ -146,7 +145,7 @@ def _list_included(
         seen.add(name)
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
-        apart = view.target.distro not in ONE_FOLDER or overlaid
+        apart = overlaid or not view.offers.has_one_include_folder
         missed = apart and needed and not _comes_with_client_library(view, name)
         bad = repeats.severity("included", Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", severity=bad)

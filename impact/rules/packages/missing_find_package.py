@@ -9,9 +9,9 @@ Why it breaks
     The compiler misses the include path, or CMake stops at a target, unless another package happens to add them.
 
 Severity
-    error where a target is linked or given under a name that only the missing find_package defines, and from Jazzy on
-    for includes of compiled code; warning for other includes, since an include path may come along by accident; note
-    for what is not declared, since undeclared-package reports it.
+    error where a target is linked or given under a name that only the missing find_package defines, and for includes of
+    compiled code where the package has an include folder of its own; warning for other includes, since an include path
+    may come along by accident; note for what is not declared, since undeclared-package reports it.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -30,7 +30,6 @@ from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-from .ungiven_package import ONE_FOLDER
 from .unset_library_variable import fold
 
 _SYSTEM_BY_DEFAULT = (
@@ -107,11 +106,14 @@ def missing_find_package(view: View):
 
 
 def _doubt_of_include(view: View, need) -> Doubt | None:
-    """How surely a missing find_package stops the compiler: from Jazzy on every package has its include folder."""
+    """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
     if not (need.targets or need.public):
         return Doubt.UNCOMPILED
-    apart = view.target.ros == 2 and view.target.distro not in (*ONE_FOLDER, "humble", "iron")
-    return None if apart and need.targets and len(need.providers) == 1 else Doubt.LUCKY
+    if view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or len(need.providers) > 1:
+        return Doubt.LUCKY
+    name = need.providers[0].name
+    own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, need.subject)
+    return None if own_folder else Doubt.LUCKY
 
 
 # Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,

@@ -5,10 +5,12 @@ What it does
     target is given, itself or through what it links, nor the whole package.
 
 Why it breaks
-    The compiler does not get the include folder of the package. Until Galactic all packages had one folder in common.
+    The compiler does not get the include folder of the package. Until Galactic all packages had one folder in common,
+    and some still use it.
 
 Severity
-    error for code that is built in any case; warning in tests, and under a condition that is not known.
+    error for code that is built in any case; warning in tests, under a condition that is not known, and where it is not
+    known which folder the package uses.
 
 Example
     find_package(angles REQUIRED)
@@ -18,8 +20,8 @@ Use instead
     ament_target_dependencies(node rclcpp angles)
 
 Not reported
-    Packages that come with one that the target is given; targets that are given something that cannot be seen; targets
-    for distros before Humble.
+    Packages that come with one that the target is given; packages whose headers lie in the folder that packages have in
+    common; targets that are given something that cannot be seen.
 """
 
 import re
@@ -31,8 +33,6 @@ from ..severity import Doubt
 from ..text import Text
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
-# Distros in which headers of all packages lay in one folder, so that any found package served every target.
-ONE_FOLDER = ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
 
 
 @rule(
@@ -48,7 +48,7 @@ def ungiven_package(view: View):
 
 def _list_ungiven(view: View, package):
     """Packages that are found, whose headers a target includes, and that the target is not given."""
-    if package.build_type != "ament_cmake" or view.target.distro in ONE_FOLDER or package.build.unresolved:
+    if package.build_type != "ament_cmake" or view.offers.has_one_include_folder or package.build.unresolved:
         return
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
@@ -70,6 +70,9 @@ def _list_ungiven(view: View, package):
         name = providers[0].name
         if name not in found or name == package.name or name in seen or name.endswith("_vendor"):
             continue
+        own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, include.path)
+        if own_folder is False:
+            continue
         for target in include.targets:
             if target not in reach:
                 items = _find_given(targets, target)
@@ -83,7 +86,11 @@ def _list_ungiven(view: View, package):
                 continue
             seen.add(name)
             certain = view.certain(targets[target].conditions)
-            doubts = (include.role == "build" or Doubt.TEST, certain or Doubt.CONDITIONAL)
+            doubts = (
+                include.role == "build" or Doubt.TEST,
+                certain or Doubt.CONDITIONAL,
+                own_folder or Doubt.INCOMPLETE,
+            )
             data = {"target": target, "header": include.path}
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
             break
