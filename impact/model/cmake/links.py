@@ -76,6 +76,32 @@ def public_links(target: BuildTarget) -> Iterator[Link]:
             yield link
 
 
+def passed_on_package(link: Link) -> str:
+    """The package whose targets a link passes on; empty for libraries that are handed on by their paths."""
+    if link.how == "ament":
+        return "" if "$" in link.item else link.item
+    if link.how != "link" or ("$" in link.item and not link.item.endswith("_TARGETS}")):
+        return ""
+    return package_of(link.item) if "::" in link.item or "$" in link.item else ""
+
+
+def list_found_names(view: View, package: Package) -> set[str] | None:
+    """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
+    names: set[str] = set()
+    for found in package.build.found:
+        if found.how == "ament_auto":
+            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
+        names.add(found.name)
+        names.update(p.name for p in view.cmake(found.name))
+    for export in package.build.exports:
+        if export.how == "ament_export_dependencies":
+            names.add(export.item)
+    if any("${" in f.name for f in package.build.found):
+        return None
+    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
+    return names
+
+
 def stops_at_names(view: View) -> bool:
     """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
     was never true. Source: commit 99d316a of ament_cmake."""

@@ -30,10 +30,9 @@ Not reported
     ROS 1 names in a package that also includes ROS 1 headers, as bridges do.
 """
 
-import re
 from collections.abc import Iterator
 
-from ...model.misspelling import one_edit
+from ...model.misspelling import is_slip
 from ...model.package import IncludeUse, is_header
 from ...model.view import View
 from ...model.workspace import Package
@@ -195,6 +194,6 @@ def _find_misspelt(view: View, package: Package, path: str) -> str | None:
     bare = "/" not in path
     for header in package.digest.headers:
         own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
-        if one_edit(path, own) and re.findall(r"\d", path) == re.findall(r"\d", own):
+        if is_slip(path, own):
             return own
     return None

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.cmake.links import exported_targets, package_of, public_links
+from ...model.cmake.links import exported_targets, passed_on_package, public_links
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.version import at_least
@@ -82,7 +82,7 @@ def _list_linked(
         if not view.certain(target.conditions):
             continue
         for link in public_links(target):
-            name = _named_by(link) if by_target or link.how != "ament" else ""
+            name = passed_on_package(link) if by_target or link.how != "ament" else ""
             known = found.get(name.lower())
             if known is None or known.name in seen or known.name.lower() in reach or known.name == package.name:
                 continue
@@ -118,15 +118,6 @@ def _is_only_loaded(view: View, package: Package) -> bool:
     return plugins and not any(
         found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
     )
-
-
-def _named_by(link) -> str:
-    """The package whose targets a link passes on; empty for libraries that are handed on by their paths."""
-    if link.how == "ament":
-        return "" if "$" in link.item else link.item
-    if link.how != "link" or ("$" in link.item and not link.item.endswith("_TARGETS}")):
-        return ""
-    return package_of(link.item) if "::" in link.item or "$" in link.item else ""
 
 
 def _list_included(

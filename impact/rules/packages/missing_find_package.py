@@ -24,7 +24,7 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.cmake.links import list_given_names, stops_at_names
+from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.view import View, interface_of
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
@@ -61,7 +61,7 @@ def missing_find_package(view: View):
         if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
             continue
         yield from _only_placed(view, package)
-        found = found_names(view, package)
+        found = list_found_names(view, package)
         if found is None:
             continue
         reachable = view.spread(found) | view.roles.found_with(found)
@@ -144,20 +144,3 @@ def _only_placed(view: View, package):
 
 def _cmake_of(view: View, name: str) -> set[str]:
     return {p.name for p in view.cmake(name)}
-
-
-def found_names(view: View, package) -> set[str] | None:
-    """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
-    names: set[str] = set()
-    for found in package.build.found:
-        if found.how == "ament_auto":
-            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
-        names.add(found.name)
-        names.update(p.name for p in view.cmake(found.name))
-    for export in package.build.exports:
-        if export.how == "ament_export_dependencies":
-            names.add(export.item)
-    if any("${" in f.name for f in package.build.found):
-        return None
-    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
-    return names

@@ -23,7 +23,7 @@ Not reported
 
 import re
 
-from ...model.misspelling import one_edit
+from ...model.misspelling import is_slip
 from ...model.view import View
 from ...targets.providers.library import variables
 from ..fix_actions import Replace
@@ -59,15 +59,14 @@ def misspelt_cmake_variable(view: View):
         yield from _list_misspelt(view, package)
 
 
-def _is_slip(stem: str, name: str) -> bool:
+def _is_misspelt(stem: str, name: str) -> bool:
     """True when the stem of a variable is a letter or an underscore away from a package's name; a library's variables
     often have another number or other separators in them than its name."""
     letters = re.sub(r"[\W_\d]", "", name)
     return (
         len(letters) > 4
-        and one_edit(stem, name)
+        and is_slip(stem, name)
         and stem.lower() != name.lower()
-        and re.sub(r"\D", "", stem) == re.sub(r"\D", "", name)
         and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
     )
 
@@ -91,7 +90,7 @@ def _list_misspelt(view: View, package):
                 break
         else:
             continue
-        meant = next((name for name in found if name.isidentifier() and _is_slip(stem, name)), None)
+        meant = next((name for name in found if name.isidentifier() and _is_misspelt(stem, name)), None)
         if meant is not None and not view.cmake(stem) and use.name not in _set_by_hand(package):
             seen.add(use.name)
             yield _diagnose_variable(package, use, meant, f"{meant}{suffix}", "variable")

@@ -43,11 +43,9 @@ from ..fix_actions import Declare
 from ..rule import Diagnostic, rule
 from ..severity import AT_RUN_TIME, Repeats
 from ..text import Text
-from .clean_machine import ASKED, doubts_of_chance, doubts_of_missing, is_chance
+from .clean_machine import ASKED, TEST_HEADERS, doubts_of_chance, doubts_of_missing, is_chance
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
-# The macros that make tests bring these headers.
-_WITH_TESTS = ("gtest/", "gmock/")
 _HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
 
 
@@ -66,7 +64,7 @@ def undeclared_package(view: View):
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
             if view.answered(need.providers, declared) or (
-                need.subject.startswith(_WITH_TESTS) and need.role == "test"
+                need.subject.startswith(TEST_HEADERS) and need.role == "test"
             ):
                 continue
             name = name_to_declare(view, need)

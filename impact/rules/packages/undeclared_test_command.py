@@ -1,8 +1,8 @@
 """undeclared-test-command: a command that makes tests comes from a package that nothing declared brings.
 
 What it does
-    Looks for commands of ament's packages for tests and linters where neither find_package nor ament_lint_auto, which finds what is
-    declared for tests, can have brought them.
+    Looks for commands of ament's packages for tests and linters where neither find_package nor ament_lint_auto, which
+    finds what is declared for tests, can have brought them.
 
 Why it breaks
     CMake stops at an unknown command wherever tests are built, on a machine that has just what package.xml declares.
