@@ -56,7 +56,7 @@ def export_without_components(view: View):
 
 # Packages whose configuration defines targets for the components asked for alone, and of these the components that need
 # not be asked for; and those that are not found at all without components. Source: FindBoost in cmake-modules(7);
-# Qt5Config.cmake and Qt6Config.cmake.
+# Qt5Config.cmake and Qt6Config.cmake: of files of CMake the stored indices have the names alone.
 _COMPONENTS_ALONE = {"Boost": frozenset({"boost", "headers"}), "Qt5": frozenset(), "Qt6": frozenset()}
 _NONE_WITHOUT = frozenset({"Qt5", "Qt6"})
 

@@ -35,7 +35,8 @@ COMPILED = (
     ("libusb-1.0/", "usb"),
 )
 """How the include paths of compiled libraries begin, and a word of every name that each is linked by, without
-separators. Source: the libraries' documentation."""
+separators. Source: the libraries' documentation. Kept by hand: no stored index tells whether a header can be used
+without the library, which none of these can."""
 # The same of libraries of which some headers can be used alone, so that another target has to show that it is linked.
 _PARTLY_COMPILED = (
     ("GeographicLib/", "geographiclib"), ("assimp/", "assimp"), ("glog/", "glog"), ("ceres/", "ceres"),

@@ -32,6 +32,7 @@ from ..severity import Doubt
 from ..text import Text
 from .unset_library_variable import fold
 
+# Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
 _SYSTEM_BY_DEFAULT = (
     *("boost/", "yaml-cpp/", "tinyxml", "SDL/", "libusb", "GL/", "zlib", "curl/", "gtest/", "gmock/", "openssl/"),
 )

@@ -25,9 +25,6 @@ from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
 
-# The packages that message_generation brings: each makes messages for one language.
-_GENERATORS = frozenset({"gencpp", "genpy", "genlisp", "geneus", "gennodejs"})
-
 
 @rule(
     scope="target",
@@ -46,8 +43,10 @@ def missing_message_generation(view: View):
         found = {f.name for f in package.build.found}
         if not generated or "message_generation" in found:
             continue
-        if found & _GENERATORS or _GENERATORS & view.spread(found & {"genmsg"}):
-            continue  # genmsg looks for every generator that is installed
+        # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
+        generators = {*view.roles.exports("message_generation")} - {"genmsg"}
+        if found & generators or generators & view.spread(found & {"genmsg"}):
+            continue
         through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
         doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
         yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)

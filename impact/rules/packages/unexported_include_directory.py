@@ -76,7 +76,8 @@ def _list_nothing(view: View, package: Package) -> Iterator[Diagnostic]:
     yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
 
 
-# System libraries whose headers lie in a folder of their own that the compiler does not search by itself.
+# System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
+# hand: the stored index has headers by the path that dependants write, below whichever folder.
 _OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
 
 

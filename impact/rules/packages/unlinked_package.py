@@ -128,7 +128,8 @@ def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
 
 # Headers of classes and functions that stand in a library, so that a program that uses them is linked to it. Headers
 # that are templates, or inline, are left out: who includes those may do without the library. Source: the packages'
-# sources, in which the constructors and functions of these stand in a .cpp file.
+# sources, in which the constructors and functions of these stand in a .cpp file. Stored surfaces tell which functions
+# are inline, and not which ones of a header a program is sure to use: most of these headers have some that are inline.
 _HEADERS = """
     camera_info_manager/camera_info_manager.h control_toolbox/pid.h controller_manager/controller_manager.h
     costmap_2d/costmap_2d_ros.h cv_bridge/cv_bridge.h eigen_conversions/eigen_kdl.h
