@@ -135,7 +135,8 @@ class Roles:
         if any("$" in name for name in names) or any(f.how == "ament_auto" for f in build.found):
             return None
         names.extend(f.name for f in build.handed_on)
-        names.extend(name for made in build.generated for name, _ in made.dependencies)
+        # rosidl exports what interfaces are made of; generate_messages() leaves that to CATKIN_DEPENDS.
+        names.extend(name for made in build.generated if made.how == "rosidl" for name, _ in made.dependencies)
         return names
 
     def found_with(self, names: Iterable[str]) -> frozenset[str]:

@@ -47,3 +47,11 @@ def _links(view: View, package: Package, other: str, target: str) -> bool:
         for link in built.links
         if link.how in ("link", "ament")
     )
+
+
+def is_only_loaded(view: View, package: Package) -> bool:
+    """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
+    plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
+    return plugins and not any(
+        found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
+    )

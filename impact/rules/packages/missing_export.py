@@ -36,7 +36,7 @@ from ..rule import Diagnostic, rule
 from ..severity import EXPORTED, Doubt, Repeats
 from ..text import Text
 from .ament_exports import AmentExports, read_ament_exports
-from .dependants import links_without
+from .dependants import is_only_loaded, links_without
 
 _ADD = "add `{subject}` to ament_export_dependencies"
 
@@ -96,7 +96,7 @@ def _list_linked(
 
 
 def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
-    if link.how == "ament" and _is_only_loaded(view, package):
+    if link.how == "ament" and is_only_loaded(view, package):
         return (Doubt.UNCOMPILED,)
     if _comes_with_client_library(view, name):
         return (Doubt.DISPENSABLE,)
@@ -110,14 +110,6 @@ def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) 
 def _comes_with_client_library(view: View, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
     return name in view.spread(("rclcpp",))
-
-
-def _is_only_loaded(view: View, package: Package) -> bool:
-    """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
-    plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
-    return plugins and not any(
-        found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
-    )
 
 
 def _list_included(
