@@ -13,12 +13,18 @@ from typing import NamedTuple
 from rosimpact.impact.facts.manifest import Manifest
 from rosimpact.impact.facts.setup import SetupFile
 from rosimpact.impact.model.cmake.build import Build
+from rosimpact.impact.model.cpp.lost_headers import LostHeaders
 from rosimpact.impact.model.package import Digest
+from rosimpact.impact.model.python.programs import ScriptSetup
+from rosimpact.impact.model.undeclared_parameters import UndeclaredParameter
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import Diagnostic
 
-START = (View, Package, Digest, Manifest, Build, SetupFile, Workspace, Diagnostic)
+START = (
+    *(View, Package, Digest, Manifest, Build, SetupFile, Workspace, Diagnostic),
+    *(LostHeaders, ScriptSetup, UndeclaredParameter),
+)
 STEPS = 2
 HEAD = """\
 # What a rule can ask
@@ -37,6 +43,12 @@ A rule gets a `View`: the workspace (`view.workspace`) as one target (`view.targ
 | what a package uses of others, with who provides it | `view.needs(package)` |
 | which ROS, which distro, which version of a package or library | `view.target` |
 | whether something outside of the workspace is there | `view.availability(symbol)` |
+| what CMake finds along with packages, and what a package has at hand in a role | `view.roles` |
+| what targets link, pass on and are given by name | `model/cmake/links.py` |
+| which C++ standard targets are compiled under | `find_standards(view, package)` of `model/standards.py` |
+| which header brings a name, where nothing that a file includes does | `LostHeaders(view, package).find(need)` |
+| which programs an ament_python package installs, and where | `ScriptSetup(package)` |
+| which parameters are set that the target does not declare | `list_undeclared_parameters(view, package)` |
 
 These are the public attributes and methods of these types and of those that they return. What is not explained here is
 explained where the type is defined.

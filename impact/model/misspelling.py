@@ -28,6 +28,11 @@ def one_edit(a: str, b: str) -> bool:
     return a[start:] == b[start + 1 :]
 
 
+def is_slip(one: str, other: str) -> bool:
+    """True when one edit turns a name into another and their digits are the same: those tell versions apart."""
+    return one_edit(one, other) and re.findall(r"\d", one) == re.findall(r"\d", other)
+
+
 class Names:
     """An index of known names that answers which of them a misspelt one means."""
 

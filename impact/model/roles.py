@@ -121,14 +121,42 @@ class Roles:
         view = self._view
         own = view.workspace.packages.get(name)
         if own is not None:
-            if any(f.how == "ament_auto" for f in own.build.found):
-                return self._promised(name)
-            handed = [e.item for e in own.build.exports if e.how in _HANDED_ON and view.active(e.conditions)]
-            return [key for item in handed for key in self._named(item)]
+            handed = self._list_own_exports(own)
+            return self._promised(name) if handed is None else [key for item in handed for key in self._named(item)]
         build = view.offers.exports(name)
         if build is None:
             return self._promised(name)
         return [key for item in build for key in self._named(item)]
+
+    def _list_own_exports(self, package: Package) -> list[str] | None:
+        """What CMake looks for wherever it finds a package of the workspace; None where that is not known."""
+        build = package.build
+        names = [e.item for e in build.exports if e.how in _HANDED_ON and self._view.active(e.conditions)]
+        if any("$" in name for name in names) or any(f.how == "ament_auto" for f in build.found):
+            return None
+        names.extend(f.name for f in build.handed_on)
+        # rosidl exports what interfaces are made of; generate_messages() leaves that to CATKIN_DEPENDS.
+        names.extend(name for made in build.generated if made.how == "rosidl" for name, _ in made.dependencies)
+        return names
+
+    def found_with(self, names: Iterable[str]) -> frozenset[str]:
+        """All that CMake may find where it finds these: of packages of the workspace what they export, of others all
+        that their manifests depend on."""
+        view = self._view
+        found: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            name = waiting.pop()
+            if name in found:
+                continue
+            found.add(name)
+            own = view.workspace.packages.get(name)
+            further = self._list_own_exports(own) if own is not None and own.build.files else None
+            if further is None:
+                found |= view.spread({name} | {p.name for p in view.cmake(name)})
+            else:
+                waiting.extend(further)
+        return frozenset(found)
 
     def _named(self, item: str) -> Iterable[str]:
         """The package of this name, or who answers find_package() of a system library's CMake name."""

@@ -38,6 +38,8 @@ class Doubt(enum.Enum):
     INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
     AMBIGUOUS = "something else of the same name may be meant", "warning"
     OWN = "the workspace has something of this name itself", "note"
+    PRIVATE = "nobody knows the name in public; it may belong to a private repository", "note"
+    UNCHECKED = "it says what was left out, and that something is wrong there is not known", "note"
     # Of what follows
     UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
     FAR = "it holds only some long-term distros later", "note"

@@ -37,8 +37,8 @@ READ = {
     ("ros-image-pipeline", "1.17.0"): (
         8,
         """
-        warning misspelt-cmake-name depth_image_proc  depth_image_proc/CMakeLists.txt             BOOST_INCLUDE_DIRS
-        warning missing-install     depth_image_proc  depth_image_proc/script/update_frame_id.py  update_frame_id.py
+        warning misspelt-cmake-variable depth_image_proc  depth_image_proc/CMakeLists.txt             BOOST_INCLUDE_DIRS
+        warning uninstalled-file depth_image_proc  depth_image_proc/script/update_frame_id.py  update_frame_id.py
         """,
     ),
 }

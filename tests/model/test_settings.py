@@ -5,7 +5,7 @@ from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.facts.words import words_of
 from rosimpact.impact.model.settings import Named, Setting, in_launch, in_parameters, mentions_changing, named_in
-from rosimpact.impact.rules.api.removed_parameter import means
+from rosimpact.impact.model.undeclared_parameters import means
 
 CHANGING = {
     "old_rate": frozenset(("base_driver",)),

@@ -6,7 +6,7 @@ import pytest
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model.flow import edges
-from rosimpact.impact.model.flow.misspelling import NearNames, is_in_namespace, is_slip
+from rosimpact.impact.model.flow.misspelling import NearNames, is_in_namespace, is_slip_of_name
 
 NAMES = ["/scan", "/scans", "/sacn", "/front/scan", "/odom", "/Odom", "/odom_", "scan", "/cmd_vel", "/cmdvel", "/arm_l"]
 
@@ -19,14 +19,14 @@ def test_near_names_are_those_that_a_comparison_of_all_finds(namespaces):
     names = [*NAMES, *made, *(name[:2] + name[3:] for name in made if "/" not in name and len(name) > 5)]
     near = NearNames([(name, name) for name in names], namespaces=namespaces)
     for one in names:
-        same = [n for n in names if is_slip(one, n) or (namespaces and is_in_namespace(one, n))]
+        same = [n for n in names if is_slip_of_name(one, n) or (namespaces and is_in_namespace(one, n))]
         assert list(near.near(one)) == same
 
 
 def test_very_long_names_are_near_to_nothing():
     near = NearNames([("a" * 1_000_000, 1), ("scan", 2)], namespaces=True)
     assert list(near.near("a" * 999_999)) == []
-    assert list(near.near("scna")) == ([2] if is_slip("scna", "scan") else [])
+    assert list(near.near("scna")) == ([2] if is_slip_of_name("scna", "scan") else [])
 
 
 MANIFEST = """<package format="3"><name>{}</name><version>1.0.0</version><description>d</description>

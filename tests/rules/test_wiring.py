@@ -539,7 +539,7 @@ ROWS = {
             run_cpp="#include <ompl/base/StateSpace.h>\n" + MAIN,
         ),
         ("sled/CMakeLists.txt", "include_directories(${OMPL_INCLUDE_DIRS})\n", ""),
-        ("error", "ompl"),
+        ("warning", "ompl"),
     ),
     "a generator that is found": Row(
         "missing-interface-wiring",

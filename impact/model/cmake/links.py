@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...targets.providers.library import standard_year
-from .build import BuildTarget, Link
+from ...targets.version import at_least
+from .build import At, BuildTarget, Link, for_tests
 
 if TYPE_CHECKING:
     from ..view import View
@@ -76,64 +76,45 @@ def public_links(target: BuildTarget) -> Iterator[Link]:
             yield link
 
 
-def found_with(view: View, names: set[str]) -> frozenset[str]:
-    """Packages that are found along with these, by what each looks for where it is found: packages of the workspace by
-    what they export, others by what their manifests depend on."""
-    found: set[str] = set()
-    waiting = list(names)
-    while waiting:
-        name = waiting.pop()
-        if name in found:
-            continue
-        found.add(name)
-        package = view.workspace.packages.get(name)
-        further = _exported(package) if package is not None else None
-        if further is None:
-            found |= view.spread({name} | {p.name for p in view.cmake(name)})
-        else:
-            waiting.extend(further)
-    return frozenset(found)
+def passed_on_package(link: Link) -> str:
+    """The package whose targets a link passes on; empty for libraries that are handed on by their paths."""
+    if link.how == "ament":
+        return "" if "$" in link.item else link.item
+    if link.how != "link" or ("$" in link.item and not link.item.endswith("_TARGETS}")):
+        return ""
+    return package_of(link.item) if "::" in link.item or "$" in link.item else ""
 
 
-def _exported(package: Package) -> list[str] | None:
-    """The packages that one of the workspace looks for where it is found; None where that is not known."""
-    build = package.build
-    names = [e.item for e in build.exports if e.how in ("ament_export_dependencies", "catkin_depends")]
-    if not build.files or any("$" in name for name in names) or any(f.how == "ament_auto" for f in build.found):
+def list_found_names(view: View, package: Package) -> set[str] | None:
+    """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
+    names: set[str] = set()
+    for found in package.build.found:
+        if found.how == "ament_auto":
+            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
+        names.add(found.name)
+        names.update(p.name for p in view.cmake(found.name))
+    for export in package.build.exports:
+        if export.how == "ament_export_dependencies":
+            names.add(export.item)
+    if any("${" in f.name for f in package.build.found):
         return None
-    names.extend(f.name for f in build.handed_on)
-    names.extend(name for made in build.generated for name, _ in made.dependencies)
+    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
     return names
 
 
-def standards_asked(view: View, package: Package) -> dict[str, int]:
-    """The years of the C++ standards that targets are compiled under at least: each one's own, and those that what it
-    links asks of its users, in the package, the workspace and the released packages of the target."""
-    targets = {target.name: target for target in package.build.targets}
-    found: dict[str, int] = {}
-    for target in targets.values():
-        year, waiting, seen = standard_year(target.standard) if target.standard else 0, [target.name], set()
-        others: set[str] = set()
-        while waiting:
-            own = targets.get(waiting.pop())
-            if own is None or own.name in seen:
+def stops_at_names(view: View) -> bool:
+    """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
+    was never true. Source: commit 99d316a of ament_cmake."""
+    return at_least(view.target.version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
+
+
+def list_given_names(view: View, package: Package) -> Iterator[tuple[At, str]]:
+    """Names in ament_target_dependencies and `pkg::target` links that only find_package(pkg) can define."""
+    own = {t.name for t in package.build.targets}
+    for target in package.build.targets:
+        for link in target.links:
+            conditions = (*target.conditions, *link.conditions)
+            if not view.certain(conditions) or "$" in link.item or link.item in own or for_tests(conditions):
                 continue
-            seen.add(own.name)
-            if own.public_standard:
-                year = max(year, standard_year(own.public_standard))
-            waiting.extend([own.alias_of] if own.alias_of else [])
-            for link in own.links:
-                if link.how in ("link", "ament", "interfaces"):
-                    waiting.append(link.item)
-                    others.add(package_of(link.item))
-        if "catkin" in others:
-            others.update(f.name for f in package.build.found if f.how == "catkin")
-        for name in found_with(view, others - targets.keys()) if others else ():
-            other = view.workspace.packages.get(name)
-            asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
-                view.offers.standard(name)
-            )
-            year = max(year, standard_year(asked) if asked else 0)
-        if year:
-            found[target.name] = year
-    return found
+            if link.how == "ament" and view.is_package(link.item):
+                yield link.at, link.item

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Generic, TypeVar
 
-from ..misspelling import one_edit
+from ..misspelling import is_slip
 
 T = TypeVar("T")
 
@@ -18,7 +18,7 @@ _SIDES = (
 )  # fmt: skip
 
 
-def is_slip(one: str, other: str) -> bool:
+def is_slip_of_name(one: str, other: str) -> bool:
     """Whether two names differ, in a single part, by a slip: a letter that is wrong, too many, missing or swapped with
     its neighbour, an underscore, or upper and lower case. Digits, and last letters that stand for a side or an axis,
     tell things apart."""
@@ -26,10 +26,10 @@ def is_slip(one: str, other: str) -> bool:
     if len(a) != len(b):
         return False
     apart = [(x, y) for x, y in zip(a, b, strict=True) if x != y]
-    return len(apart) == 1 and _is_slip(*apart[0])
+    return len(apart) == 1 and _is_slip_of_part(*apart[0])
 
 
-def _is_slip(one: str, other: str) -> bool:
+def _is_slip_of_part(one: str, other: str) -> bool:
     if re.findall(r"\d+", one) != re.findall(r"\d+", other):
         return False
     plain = one.replace("_", "").lower(), other.replace("_", "").lower()
@@ -37,7 +37,7 @@ def _is_slip(one: str, other: str) -> bool:
         return True
     if min(len(one), len(other)) < _SHORTEST or any(one.replace(x, y) == other for x, y in (*_SIDES, *_turned())):
         return False
-    if not one_edit(one, other):
+    if not is_slip(one, other):
         return False
     short, long = sorted((one, other), key=len)
     place = next((i for i, (x, y) in enumerate(zip(short, long, strict=False)) if x != y), len(short))
@@ -60,7 +60,8 @@ def _alone(name: str, place: int) -> bool:
 
 class NearNames(Generic[T]):
     """Things by their names, asked for those whose name is a slip of another, or within a namespace of it: as
-    is_slip() and is_in_namespace() say, without comparing every name with every other. Very long names are no slips.
+    is_slip_of_name() and is_in_namespace() say, without comparing every name with every other. Very long names are no
+    slips.
     """
 
     def __init__(self, things: Iterable[tuple[str, T]], *, namespaces: bool = False):
@@ -92,7 +93,7 @@ class NearNames(Generic[T]):
                 found.update(self._whole.get(end, ())[:_MOST_ALIKE])
         for number in sorted(found)[:_MOST_ALIKE]:
             other, thing = self._named[number]
-            if is_slip(name, other) or (self._namespaces and is_in_namespace(name, other)):
+            if is_slip_of_name(name, other) or (self._namespaces and is_in_namespace(name, other)):
                 yield thing
 
 

@@ -33,15 +33,13 @@ Not reported
 from collections.abc import Iterator
 
 from ....edges.console import counted
-from ...model.package import NameUse
+from ...model.standards import find_failing_standard
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.changes import function_of, shows_no_type, standards_of
-from ...targets.providers.library import default_standard, standard_year
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import Change
-from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
 from ..text import Text
@@ -129,7 +127,7 @@ def _list_reviewed_of(
             or (ahead is not None and not view.active_on(ahead, use.conditions))
         ):
             continue
-        standard = _failing_standard(view, package, use, change)
+        standard = find_failing_standard(view, package, use, *standards_of(change.old))
         if standard is None:
             continue
         shown = use.shown or use.text
@@ -143,37 +141,3 @@ def _list_reviewed_of(
             data["since"] = ""  # the version is bound to the standard
         kind = "reviewed" if found.earlier else "reviewed early"
         yield diagnose(found, use.at, shown, package.name, doubts, kind=kind, data=data)
-
-
-def _raised_to(view: View) -> int:
-    """The standard that CMake raises a package's to, since the exported targets of rclcpp and others ask for it. Rclcpp
-    does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
-    if view.target.ros == 1:
-        return 0
-    if not at_least(view.target.version("rclcpp") or "9.0", "9.0"):
-        return 2014
-    return 2020 if at_least(view.target.library("gcc") or "", "15") else 2017
-
-
-def _failing_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:
-    """The C++ standard that a use fails under (empty: under any); None where it does not fail."""
-    refused_from, needs = standards_of(change.old)
-    if not refused_from and not needs:
-        return ""
-    build = package.build
-    default = default_standard(view.target)
-    own = [t.standard for t in build.targets if t.name in use.targets and t.standard]
-    fixed = view.standard(package)
-    set_for = ([fixed[0]] if fixed else []) + own
-    have = max((standard_year(number) for number in set_for), default=default)
-    if have is None:
-        return None
-    if not set_for and any(u.kind == "command" for u in build.uses):
-        return None  # a macro of another package may set it
-    if refused_from:
-        return f"C++{have % 100:02d}" if have >= refused_from else None
-    if max(have, _raised_to(view)) >= needs or not use.targets or use.role != "build":
-        return None
-    if not view.certain(use.conditions):
-        return None
-    return f"C++{have % 100:02d}"

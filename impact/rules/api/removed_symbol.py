@@ -32,7 +32,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...facts.condition import Condition
-from ...model.package import NameUse, is_header
+from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import of_row
@@ -47,15 +47,11 @@ from ..text import Text
 from ..upcoming import Upcoming, rate_upcoming
 from .brought_back import Headers
 from .diagnosis import UPSTREAM, availability_texts, diagnose
+from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted
 from .uses import list_cpp_uses
 
-_KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 # What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
 _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)})
-# Namespaces of libraries whose names are in the table without them.
-_ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
-
-
 @rule(
     scope="target",
     severity="error",
@@ -65,7 +61,7 @@ _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
     },
 )
 def removed_symbol(view: View):
-    rows = _Rows(view)
+    rows = ReviewedNames(view)
     seen = set()
     for package in view:
         for found in rate_upcoming(_list_reviewed(view, package, rows)):
@@ -80,40 +76,7 @@ def removed_symbol(view: View):
         )
 
 
-class _Rows:
-    """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
-
-    def __init__(self, view: View):
-        self.cpp: dict[str, list[Change]] = {}
-        self.python: dict[str, list[Change]] = {}
-        self.early: dict[str, list[Change]] = {}
-        for change in view.changes(*_KINDS):
-            if change.package in view.workspace.packages:
-                continue  # what the workspace itself brings is as it brings it, whatever a release did
-            if change.state == "removed" and change.old:
-                rows = self.python if change.kind.startswith("python") else self.cpp
-                rows.setdefault(change.old, []).append(change)
-            elif change.state == "absent" and change.new:
-                self.early.setdefault(change.new, []).append(change)
-        # A method that a header of the workspace has may be meant wherever its name stands.
-        self.own = {
-            use.text
-            for package in view.workspace
-            for use in package.digest.names
-            if use.language == "cpp" and is_header(use.at.path) and "::" not in use.text and not use.text.isupper()
-        }
-        self.own.update(name for package in view.workspace for name in package.digest.defined)
-
-    def find(self, use: NameUse) -> list[Change]:
-        """The rows on a name that is gone."""
-        rows = self.python if use.language == "python" else self.cpp
-        found = rows.get(use.text, [])
-        if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
-            found = rows.get(use.text.rsplit("::", 1)[-1], [])
-        return found
-
-
-def _list_reviewed(view: View, package: Package, rows: _Rows) -> Iterator[Diagnostic | Upcoming]:
+def _list_reviewed(view: View, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell."""
     headers = Headers(view, package)
     for use in package.digest.names:
@@ -131,13 +94,13 @@ def _list_reviewed(view: View, package: Package, rows: _Rows) -> Iterator[Diagno
             change, ahead = view.coming.get(use.text, (None, None))
         if (
             change is None
-            or change.kind not in _KINDS
+            or change.kind not in KINDS_OF_NAMES
             or (change.new and use.text.endswith(change.new))
             or (use.language == "python" and _TRIED.intersection(use.conditions))
             or not view.active(use.conditions)
             or not view.concerned(package, change, use.at.path)
             or (ahead is not None and not view.active_on(ahead, use.conditions))
-            or (ahead is None and _is_there(view, symbol, change))
+            or (ahead is None and is_contradicted(view, symbol, change))
         ):
             continue
         bringing = headers.bring_back(use.at.path, change) if excuses(change) else "no"
@@ -151,7 +114,7 @@ def _list_reviewed(view: View, package: Package, rows: _Rows) -> Iterator[Diagno
         yield diagnose(found if ahead is None else found.on(ahead), use.at, use.text, package.name, doubts, order=order)
 
 
-def _list_doubts(view: View, package: Package, use: NameUse, change: Change, rows: _Rows) -> list[Doubt]:
+def _list_doubts(view: View, package: Package, use: NameUse, change: Change, rows: ReviewedNames) -> list[Doubt]:
     role = "run" if use.language == "python" and _is_run(package, use) else use.role
     doubts = [*doubts_of_place(view, role, use.conditions)]
     if use.text in rows.own:
@@ -161,14 +124,6 @@ def _list_doubts(view: View, package: Package, use: NameUse, change: Change, row
     if (use.language == "python" and stood_in_for(use.text)) or change.kind == "api-changed":
         doubts.append(Doubt.INCOMPLETE)
     return doubts
-
-
-def _is_there(view: View, symbol: Symbol, change: Change) -> bool:
-    """Whether what is stored of the very release contradicts a reviewed row."""
-    if change.library or change.kind == "api-changed":
-        return False
-    asked = symbol._replace(name=change.old, packages=(change.package,))
-    return view.availability(asked).state in ("present", "deprecated")
 
 
 def _is_run(package: Package, use: NameUse) -> bool:

@@ -48,7 +48,7 @@ _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 def topic_type_mismatch(workspace: Workspace):
     for taker, number in uncompared(workspace):
         data = {"what": _WHAT[taker.role], "count": number}
-        yield Diagnostic(At(taker.path, taker.line), taker.topic, "", data, kind="uncompared", severity="note")
+        yield Diagnostic(At(taker.path, taker.line), taker.topic, "", data, "uncompared", (Doubt.UNCHECKED,))
     for pair in met(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
         other, type = pair.flow.type_of(giver), pair.flow.type_of(taker)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...model.flow.launches import Start
-from ...model.flow.misspelling import is_slip
+from ...model.flow.misspelling import is_slip_of_name
 from ...model.workspace import Workspace
 from .launch_settings import group_by_line
 
@@ -37,7 +37,7 @@ def find_unasked(workspace: Workspace) -> Iterator[Unasked]:
         if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
-        similar = next((known for known in start.parameters if is_slip(_last(known), _last(name))), "")
+        similar = next((known for known in start.parameters if is_slip_of_name(_last(known), _last(name))), "")
         yield Unasked(path, line, name, start.package, start.program.partition("/")[2], similar)
 
 

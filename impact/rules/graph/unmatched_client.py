@@ -24,7 +24,7 @@ Not reported
 
 from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
-from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip
+from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip_of_name
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
@@ -88,7 +88,7 @@ def _unmatched(flow: Flow):
         found: dict[str, Sure] = {}
         for giver in near[role, one.type].near(one.topic) if (role, one.type) in near else ():
             other = giver.endpoint
-            if is_slip(one.topic, other.topic) or _lacks_namespace(taker, giver):
+            if is_slip_of_name(one.topic, other.topic) or _lacks_namespace(taker, giver):
                 found.setdefault(other.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))

@@ -10,7 +10,8 @@ from collections.abc import Iterable
 from ...model.cmake.links import linked_items
 from ...model.view import View
 
-# What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along.
+# What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
+# Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
 BRING_NOTHING = frozenset(
     [
         "catkin", "Boost", "Eigen", "Eigen3", "EIGEN", "EIGEN3", "orocos_kdl", "console_bridge", "urdfdom",
@@ -45,7 +46,7 @@ class Exported:
             return any("$" in item or library in item.lower() for item in given)
         offer = self._view.offers.package(name)
         if offer is None:
-            return name not in BRING_NOTHING and not _INTERFACES.search(name) and name not in _BARE
+            return name not in BRING_NOTHING and not _INTERFACES.search(name)
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
         return any(library in item.lower() for item in given)
 
@@ -78,8 +79,6 @@ class Exported:
 
 
 _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
-# What packages of interfaces export.
-_BARE = frozenset({"message_runtime", "message_generation"})
 
 
 def list_linked(package, target: str) -> set[str] | None:

@@ -17,7 +17,8 @@ from ..severity import Doubt
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
 """How CMake asks for something, so that the configuration stops without it."""
 _STARTED = frozenset(("launch", "plugin", "shell"))
-_TEST_HEADERS = ("gtest/", "gmock/")
+TEST_HEADERS = ("gtest/", "gmock/")
+"""How the headers begin that macros which make tests bring along."""
 # What a package that generates messages hands on to whoever uses them.
 _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
@@ -97,7 +98,7 @@ def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Do
     first = need.providers[0]
     if not need.targets:
         # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
-        passed_on = need.public and first.kind == "ros" and not need.subject.startswith(_TEST_HEADERS)
+        passed_on = need.public and first.kind == "ros" and not need.subject.startswith(TEST_HEADERS)
         if need.role == "test":
             return (Doubt.TEST,)
         if not passed_on or circular(view, package, name):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import found_with, package_of
+from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
 
@@ -32,7 +32,7 @@ def links_without(view: View, package: Package, target: BuildTarget, needed: str
         found = {f.name for f in other.build.found if view.active(f.conditions)}
         if any("$" in name for name in found) or any(f.how == "ament_auto" for f in other.build.found):
             continue
-        if names.isdisjoint(name.lower() for name in found_with(view, found)):
+        if names.isdisjoint(name.lower() for name in view.roles.found_with(found)):
             return True
     return False
 
@@ -46,4 +46,12 @@ def _links(view: View, package: Package, other: str, target: str) -> bool:
         for built in package.build.targets
         for link in built.links
         if link.how in ("link", "ament")
+    )
+
+
+def is_only_loaded(view: View, package: Package) -> bool:
+    """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
+    plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
+    return plugins and not any(
+        found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
     )

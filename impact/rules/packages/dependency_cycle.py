@@ -21,6 +21,7 @@ Not reported
 
 from ...model.view import View
 from ..rule import Diagnostic, rule
+from ..severity import Doubt
 from ..text import Text
 
 # Every cycle that is found is cut, and the rest searched again. A workspace in which all packages need each other has
@@ -66,7 +67,7 @@ def dependency_cycle(view: View):
         if number == most:
             if view.reports_on(first):
                 at = view.manifest_place(package, dependency)
-                yield Diagnostic(at, "further cycles", first, {"most": most}, kind="more", severity="note")
+                yield Diagnostic(at, "further cycles", first, {"most": most}, "more", (Doubt.UNCHECKED,))
             return
         if view.reports_on(first):
             at = view.manifest_place(package, dependency)

@@ -34,3 +34,19 @@ def is_installed(package: Package, installs: list[Install], path: str) -> bool:
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True
     return False
+
+
+def has_only_data(package: Package, installs: list[Install]) -> bool:
+    """Whether a package of catkin builds nothing and installs nothing."""
+    return not installs and package.build_type == "catkin" and not package.build.targets
+
+
+def list_references(view: View) -> dict[str, dict[str, set[str]]]:
+    """Package to what the workspace's launch files and scripts start or open in it: kind to names."""
+    found: dict[str, dict[str, set[str]]] = {}
+    for package in view.workspace:
+        for use in package.digest.references:
+            r = use.reference
+            if r.package and r.name and use.role == "run":
+                found.setdefault(r.package, {}).setdefault(r.kind, set()).add(r.name)
+    return found

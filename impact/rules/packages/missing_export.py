@@ -1,20 +1,17 @@
-"""missing-export: dependants of the package will miss something that it promises or that its headers need.
+"""missing-export: dependants of the package will miss a package that its targets, headers or messages need.
 
 What it does
-    Compares what a package exports with what is there and with what dependants need: include directories and libraries
-    that do not exist or are not installed, system libraries exported under a name whose variables nobody sets, packages
-    that installed headers include or that an exported target links publicly and that are not exported (in catkin:
-    packages of which its messages are made), components of these that dependants do not ask for, and include
-    directories of its own headers or of system libraries off the compiler's path.
+    Compares the packages that a package exports with those that dependants need: packages that installed headers
+    include or that an exported target links publicly and that are not exported, and in catkin packages of which its
+    messages are made.
 
 Why it breaks
-    The package builds, and every package that depends on it fails: the header's own includes are not found, or the
-    exported configuration names a library that was never built.
+    The package builds, and every package that depends on it fails: CMake stops at a target that is not found, or the
+    header's own includes are missing.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist), and for a library of
-    its own that catkin_package() exports and no command makes; warning where a dependant of the workspace, or an
-    exported target or library, needs what is missing; note otherwise.
+    error where a dependant of the workspace stops; warning where a dependant, or an exported target or library, needs
+    what is missing; note otherwise.
 
 Example
     ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h
@@ -27,33 +24,29 @@ Not reported
     one folder, a missing ament_export_dependencies is a note.
 """
 
-import posixpath
+from __future__ import annotations
 
-from ...model.cmake.links import found_with
+from collections.abc import Iterator
+
+from ...model.cmake.links import exported_targets, passed_on_package, public_links
 from ...model.view import View
-from ...targets.providers.library import variables
+from ...model.workspace import Package
+from ...targets.version import at_least
 from ..rule import Diagnostic, rule
-from ..severity import Doubt
+from ..severity import EXPORTED, Doubt, Together
 from ..text import Text
-from .exports_ament import TEXTS, list_unexported
+from .ament_exports import AmentExports, read_ament_exports
+from .dependants import is_only_loaded, links_without
+
+_ADD = "add `{subject}` to ament_export_dependencies"
 
 
 @rule(
     scope="target",
     severity="error",
     texts={
-        **TEXTS,
-        "directory": Text(
-            "the exported include directory `{directory}` does not exist, so catkin stops",
-            "create it, or drop INCLUDE_DIRS",
-        ),
-        "no target": Text(
-            "the exported library `{subject}` is not a target of `{package}`", "export the library's target name"
-        ),
-        "system": Text(
-            "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing",
-            "{advice}",
-        ),
+        "link": Text("`{target}` links `{item}` publicly, but `{subject}` is not exported", _ADD),
+        "include": Text("an installed header includes `{header}`, but `{subject}` is not exported", _ADD),
         "messages": Text(
             "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
             "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
@@ -62,82 +55,89 @@ from .exports_ament import TEXTS, list_unexported
 )
 def missing_export(view: View):
     for package in view:
-        if not package.build.files:
-            continue
-        yield from _directories(view, package)
         if package.build.catkin_package is not None:
-            yield from _catkin(view, package)
-            yield from _message_packages(view, package)
-        if package.build.ament_package is not None:
-            yield from list_unexported(view, package)
+            yield from _list_of_messages(view, package)
+        ament = read_ament_exports(view, package)
+        if ament is not None:
+            seen: set[str] = set()
+            yield from _list_linked(view, package, ament, seen)
+            yield from _list_included(view, package, ament, seen)
 
 
-def _directories(view: View, package):
-    made = {posixpath.normpath(i.destination) for i in package.build.installs}
-    for export in package.build.exports:
-        if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
-            continue
-        if package.build.catkin_package is None or export.item.startswith("/") or export.item in made:
-            continue
-        item = posixpath.normpath(export.item)
-        inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
-        if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
-            continue
-        yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
+# From this version on ament_target_dependencies() links targets where it linked libraries by their paths before.
+# Source: CHANGELOG.rst of ament_cmake_target_dependencies.
+_BY_TARGET = "0.9.0"
 
 
-def _catkin(view: View, package):
-    targets = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
-    found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
-    for export in package.build.exports:
-        if not view.active(export.conditions) or "$" in export.item:
+def _list_linked(view: View, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
+    """Packages that an exported target passes on, and that dependants are not seen to find: CMake stops at a target of
+    theirs."""
+    reach = {name.lower() for name in ament.found}
+    found = {f.name.lower(): f for f in package.build.found}
+    by_target = at_least(view.target.version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
+    for target in exported_targets(package):
+        if not view.certain(target.conditions):
             continue
-        if export.how == "libraries" and export.item not in targets and not package.build.unresolved:
-            if (
-                "/" in export.item
-                or export.item.startswith("-")
-                or export.item.endswith((".so", ".a"))
-                or view.cmake(export.item)
-            ):
+        for link in public_links(target):
+            name = passed_on_package(link) if by_target or link.how != "ament" else ""
+            known = found.get(name.lower())
+            if known is None or known.name in seen or known.name.lower() in reach or known.name == package.name:
                 continue
-            sure = view.certain(export.conditions) and _is_own(view, package, export.item)
-            doubts = () if sure else (Doubt.AMBIGUOUS,)
-            yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
-        elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
-            near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
-            other = near.upper() if near == "Eigen3" else near
-            advice = f"write `{other}`" if near else f"find `{export.item}` first"
-            doubts = (Doubt.DISTURBS,) if near else (Doubt.DISPENSABLE,)
-            yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
+            if not view.certain(link.conditions) or {p.name.lower() for p in view.cmake(known.name)} & reach:
+                continue
+            seen.add(known.name)
+            item = link.item if link.how == "link" else known.name
+            doubts = _doubts_of_passed_on(view, package, target, link, known.name)
+            data = {"target": target.name, "item": item}
+            few = Together("passed on", EXPORTED)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
 
 
-def _is_own(view: View, package, library: str) -> bool:
-    """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
-    if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
-        return False
-    return all(link.item != library for target in package.build.targets for link in target.links)
+def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
+    if link.how == "ament" and is_only_loaded(view, package):
+        return (Doubt.UNCOMPILED,)
+    if _comes_with_client_library(view, name):
+        return (Doubt.DISPENSABLE,)
+    other = view.workspace.packages.get(name)
+    by_target = link.how == "link" or (
+        other is not None and any(e.how == "ament_export_targets" for e in other.build.exports)
+    )
+    return () if by_target and links_without(view, package, target, name) else (Doubt.DISTURBS,)
 
 
-def _sets(package, stem: str) -> bool:
-    """True when a find_package of the package sets variables that begin with the stem."""
-    for found in package.build.found:
-        names = variables(found.name)
-        if names is None and found.name.lower() == stem.lower():
-            return True
-        if names and any(
-            name.startswith(stem + "_") and not name.endswith(("FOUND", "VERSION", "DIR")) for name in names
-        ):
-            return True
-    return False
+def _comes_with_client_library(view: View, name: str) -> bool:
+    """True for what comes along with the client library: dependants that build a node find it all the same."""
+    return name in view.spread(("rclcpp",))
 
 
-def _message_packages(view: View, package):
+def _list_included(view: View, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
+    """Packages that installed headers include."""
+    links = not ament.hows.isdisjoint(("ament_export_libraries", "ament_export_targets"))
+    needed = links or package.name in view.workspace.includers
+    found = {f.name for f in package.build.found}
+    for need in view.weighed(package):
+        if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, ament.found):
+            continue
+        name = next((p.name for p in need.providers if p.name in found), "")
+        if not name or name in seen or name == package.name or need.providers[0].kind != "ros":
+            continue
+        seen.add(name)
+        # What the distro does not bring lies in a folder of its own there too.
+        overlaid = name in view.workspace.packages or view.target.version(name) is None
+        apart = overlaid or not view.offers.has_one_include_folder
+        missed = apart and needed and not _comes_with_client_library(view, name)
+        doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
+        few = Together("included", EXPORTED)
+        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts, together=few)
+
+
+def _list_of_messages(view: View, package):
     """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}
     if any("$" in name for name in named):
         return
-    reach = found_with(view, named)
+    reach = view.roles.found_with(named)
     for made in package.build.generated:
         if made.how != "catkin" or not made.offered or not view.certain(made.conditions):
             continue

@@ -1,22 +1,17 @@
 """missing-find-package: built code uses a package that CMake never looks for.
 
 What it does
-    Reports packages whose headers compiled code includes, or whose CMake variables and targets are used, when no
-    find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is
-    asked for brings them. What is found for the tests alone counts for the tests alone. Also components of catkin that
-    are system libraries on the target, libraries that their vendor package no longer finds, and pkg_check_modules
-    whose first argument, the prefix of its variables, is REQUIRED, and programs that include a client library and are
-    linked to nothing, or that compile the headers of a library which no component they are linked to exports (ROS 1).
+    Reports packages whose headers compiled code includes, or whose targets are used, when no find_package (or catkin
+    component, pkg_check_modules, ament_auto) of the package asks for them and none that is asked for brings them. What
+    is found for the tests alone counts for the tests alone. Also libraries that their vendor package no longer finds.
 
 Why it breaks
-    The compiler misses the include path, or the linker the library, unless another package happens to add them.
+    The compiler misses the include path, or CMake stops at a target, unless another package happens to add them.
 
 Severity
-    error where a target is linked or an include path used under a name that only the missing find_package defines,
-    where catkin is asked for a system library, for a variable that nothing sets where it stands for a library whose
-    headers the target compiles, and, since Kinetic, where no target gets ROS's include folder; warning for includes,
-    since an include path may come along by accident, for a program that includes a library of ROS and is not linked to
-    it, since it may not use it, and for other variables that nothing sets.
+    error where a target is linked or given under a name that only the missing find_package defines, and for includes of
+    compiled code where the package has an include folder of its own; warning for other includes, since an include path
+    may come along by accident; note for what is not declared, since undeclared-package reports it.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -29,28 +24,15 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.cmake.links import found_with
+from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.view import View, interface_of
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-from .find_catkin import TEXTS as CATKIN_TEXTS
-from .find_catkin import check_components, check_find_modules, check_include_directories
-from .find_targets import (
-    ONE_FOLDER,
-    check_client_links,
-    check_given_packages,
-    check_own_name,
-    list_given_names,
-    stops_at_names,
-)
-from .find_targets import TEXTS as TARGET_TEXTS
-from .find_variables import TEXTS as VARIABLE_TEXTS
-from .find_variables import check_prefixes, check_unset_libraries, fold
-from .unlinked import TEXTS as LINK_TEXTS
-from .unlinked import list_unlinked
+from .unset_library_variable import fold
 
+# Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
 _SYSTEM_BY_DEFAULT = (
     *("boost/", "yaml-cpp/", "tinyxml", "SDL/", "libusb", "GL/", "zlib", "curl/", "gtest/", "gmock/", "openssl/"),
 )
@@ -60,10 +42,6 @@ _SYSTEM_BY_DEFAULT = (
     scope="target",
     severity="error",
     texts={
-        **CATKIN_TEXTS,
-        **TARGET_TEXTS,
-        **VARIABLE_TEXTS,
-        **LINK_TEXTS,
         "given": Text(
             "`{subject}` is given to a target but find_package(`{subject}`) is not called",
             "add find_package({subject} REQUIRED)",
@@ -83,20 +61,11 @@ def missing_find_package(view: View):
         build = package.build
         if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
             continue
-        yield from check_find_modules(view, package)
-        yield from check_components(view, package)
-        yield from check_include_directories(view, package)
-        yield from check_given_packages(view, package)
         yield from _only_placed(view, package)
-        yield from check_unset_libraries(view, package)
-        yield from check_prefixes(view, package)
-        yield from check_own_name(view, package)
-        yield from check_client_links(view, package)
-        yield from list_unlinked(view, package)
-        found = found_names(view, package)
+        found = list_found_names(view, package)
         if found is None:
             continue
-        reachable = view.spread(found) | found_with(view, found)
+        reachable = view.spread(found) | view.roles.found_with(found)
         tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
         outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
         built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
@@ -138,11 +107,14 @@ def missing_find_package(view: View):
 
 
 def _doubt_of_include(view: View, need) -> Doubt | None:
-    """How surely a missing find_package stops the compiler: from Jazzy on every package has its include folder."""
+    """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
     if not (need.targets or need.public):
         return Doubt.UNCOMPILED
-    apart = view.target.ros == 2 and view.target.distro not in (*ONE_FOLDER, "humble", "iron")
-    return None if apart and need.targets and len(need.providers) == 1 else Doubt.LUCKY
+    if view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or len(need.providers) > 1:
+        return Doubt.LUCKY
+    name = need.providers[0].name
+    own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, need.subject)
+    return None if own_folder else Doubt.LUCKY
 
 
 # Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
@@ -173,20 +145,3 @@ def _only_placed(view: View, package):
 
 def _cmake_of(view: View, name: str) -> set[str]:
     return {p.name for p in view.cmake(name)}
-
-
-def found_names(view: View, package) -> set[str] | None:
-    """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
-    names: set[str] = set()
-    for found in package.build.found:
-        if found.how == "ament_auto":
-            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
-        names.add(found.name)
-        names.update(p.name for p in view.cmake(found.name))
-    for export in package.build.exports:
-        if export.how == "ament_export_dependencies":
-            names.add(export.item)
-    if any("${" in f.name for f in package.build.found):
-        return None
-    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
-    return names

@@ -1,8 +1,8 @@
 """undeclared-test-command: a command that makes tests comes from a package that nothing declared brings.
 
 What it does
-    Looks for commands of ament's test packages where neither find_package nor ament_lint_auto, which finds what is
-    declared for tests, can have brought them.
+    Looks for commands of ament's packages for tests and linters where neither find_package nor ament_lint_auto, which
+    finds what is declared for tests, can have brought them.
 
 Why it breaks
     CMake stops at an unknown command wherever tests are built, on a machine that has just what package.xml declares.
@@ -29,18 +29,8 @@ from ..severity import Doubt
 from ..text import Text
 from .clean_machine import is_grouped
 
-# Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
-# ament_cmake_ros).
-_COMMANDS = {
-    "ament_add_gtest": "ament_cmake_gtest",
-    "ament_add_gtest_executable": "ament_cmake_gtest",
-    "ament_add_gmock": "ament_cmake_gmock",
-    "ament_add_gmock_executable": "ament_cmake_gmock",
-    "ament_add_pytest_test": "ament_cmake_pytest",
-    "ament_add_google_benchmark": "ament_cmake_google_benchmark",
-    "ament_add_nose_test": "ament_cmake_nose",
-    "add_launch_test": "launch_testing_ament_cmake",
-}
+# What the packages that make tests of some kind are made of.
+_TESTS = "ament_cmake_test"
 
 
 @rule(
@@ -58,8 +48,8 @@ def undeclared_test_command(view: View):
             continue
         reported = set()
         for use in package.build.uses:
-            name = _COMMANDS.get(use.name) if use.kind == "command" else None
-            if name is None or name in reported or not view.active(use.conditions) or not present(view, name):
+            name = _find_owners(view).get(use.name) if use.kind == "command" else None
+            if name in (None, package.name, *reported) or not view.active(use.conditions) or not present(view, name):
                 continue
             reported.add(name)
             if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
@@ -73,6 +63,22 @@ def undeclared_test_command(view: View):
                 doubts=_doubts(view, package, name, use.conditions),
                 fix=() if view.declared(package).get(name) else (Declare(path, name, "test_depend"),),
             )
+
+
+def _find_owners(view: View) -> dict[str, str]:
+    """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
+    ament_cmake_test, in the newest version that is stored."""
+    known = view.worked_out.get(("test commands", ""))
+    if known is None:
+        known = view.worked_out["test commands", ""] = {}
+        for name in sorted(view.target.released_names()):
+            history = view.offers.history(name) if "ament_cmake" in name else None
+            needed = view.target.dependencies(name) or ()
+            if history is None or not any(d.name == _TESTS and d.kind != "test" for d in needed):
+                continue
+            build = history.build(history.versions[-1])
+            known.update(dict.fromkeys(build.commands if build is not None else (), name))
+    return known
 
 
 def _doubts(view: View, package, name: str, conditions) -> tuple[Doubt, ...]:

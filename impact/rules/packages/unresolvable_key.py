@@ -26,10 +26,11 @@ import re
 from bisect import bisect_left
 from functools import lru_cache
 
-from ...model.misspelling import nearest, one_edit
+from ...model.misspelling import is_slip, nearest
 from ...model.view import View
 from ..fix_actions import Remove, Replace
 from ..rule import Diagnostic, rule
+from ..severity import Doubt
 from ..text import Text
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"
@@ -79,7 +80,7 @@ def unresolvable_key(view: View):
             elif longer := _parts_of(view, name):
                 yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
             else:
-                yield Diagnostic(at, name, package.name, kind="unknown", severity="note")
+                yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
 
 
 def _parts_of(view: View, name: str) -> list[str]:
@@ -114,7 +115,7 @@ def _slip(name: str, guess: str) -> bool:
     """True when only case, separators or one letter of a longer name part the two; a digit tells versions."""
     if _plain(name) == _plain(guess):
         return True
-    return len(name) > 5 and one_edit(name, guess) and re.findall(r"\d", name) == re.findall(r"\d", guess)
+    return len(name) > 5 and is_slip(name, guess)
 
 
 def _plain(name: str) -> str:

@@ -24,6 +24,8 @@ from ...model.view import View
 from ..rule import Diagnostic, rule
 from ..text import Text
 
+# How names of packages begin or end that are used by what is not read: build tools, programs that people start, and
+# what generated code needs.
 _SILENT = (
     "_vendor",
     "_runtime",

@@ -24,7 +24,7 @@ Not reported
     compiler's default is below what they ask for: CMake then writes the higher one behind it.
 """
 
-from ...model.cmake.links import standards_asked
+from ...model.standards import find_standards, may_be_set_elsewhere
 from ...model.view import View
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
@@ -32,12 +32,6 @@ from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-
-# Macros that come with the build tools, and set no standard.
-_HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_message", "add_service", "add_action",
-             "ros", "rosidl_", "pkg_", "qt", "gtest_", "class_loader_", "pluginlib_", "rclcpp_components_",
-             "protobuf_", "install_", "check_", "find_", "nodelet_", "orocos_", "configure_")  # fmt: skip
-
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
 _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"
@@ -71,13 +65,13 @@ def _ros1(view: View, package, default: int | None):
     year = standard_year(fixed[0]) if fixed else default
     if year is None:
         return
-    if not fixed and _may_be_set(view, package):
+    if not fixed and may_be_set_elsewhere(view, package):
         return
     told = set()
     # Qt's targets ask for C++11 themselves, as Qt does since 5.7 (its release notes).
     raised = at_least(view.target.library("qt") or "5.7", "5.7")
     sure = bool(fixed) or not (raised and any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found))
-    standards = standards_asked(view, package)
+    standards = find_standards(view, package)
     for include in package.digest.includes:
         have = max([year, *(standards[t] for t in include.targets if t in standards)])
         if have >= 2020 or include.role != "build" or not include.targets or not view.certain(include.conditions):
@@ -105,7 +99,7 @@ def _ros2(view: View, package, default: int | None):
         return
     have = standard_year(fixed[0])
     own = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
-    standards = standards_asked(view, package)
+    standards = find_standards(view, package)
     newest = view.newest
     for include in package.digest.includes:
         if include.role != "build" or not include.targets or not view.certain(include.conditions):
@@ -154,14 +148,3 @@ def _of_library(path: str) -> NeededStandard | None:
     """What a header of the standard library needs; empty as a package."""
     standard = HEADER_SINCE.get(path)
     return NeededStandard(standard, "", "", True) if standard else None
-
-
-def _may_be_set(view: View, package) -> bool:
-    """True where a macro of another package may set the standard."""
-    if any(u.kind == "command" and not u.name.startswith(_HARMLESS) for u in package.build.uses):
-        return True
-    if any("include(" in reason for _, reason in package.build.unresolved):
-        return True
-    found = view.spread(f.name for f in package.build.found)
-    own = [view.workspace.packages[name] for name in found if name in view.workspace.packages]
-    return any(path.endswith((".cmake", ".cmake.in", ".cmake.em")) for other in own for path in other.files)

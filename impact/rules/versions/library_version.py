@@ -53,8 +53,10 @@ def library_version(view: View):
                 found.name,
                 package.name,
                 {"version": answer.version, "requested": found.version},
-                doubts=() if view.certain(found.conditions) else (Doubt.CONDITIONAL,),
-                severity="" if found.required else "note",
+                doubts=(
+                    found.required or Doubt.DISPENSABLE,
+                    view.certain(found.conditions) or Doubt.CONDITIONAL,
+                ),
             )
 
 

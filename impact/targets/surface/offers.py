@@ -100,6 +100,27 @@ class Offers:
             return False
         return history.is_bundle(offer.stored if offer is not None else history.versions[-1])
 
+    @cached_property
+    def has_one_include_folder(self) -> bool:
+        """Whether the headers of all packages lie in one folder, so that whoever is given any package finds those of
+        all: told by rclcpp, which was moved together with generated headers and the core of ROS 2. True where nothing
+        of it is stored."""
+        return self._has_own_folder("rclcpp", "rclcpp/rclcpp.hpp") is not True
+
+    def has_own_folder(self, package: str, header: str) -> bool | None:
+        """Whether a header lies in a folder that only those search who are given its package; None where that is not
+        known."""
+        own = self._has_own_folder(package, header)
+        return False if own is None and self.has_one_include_folder else own
+
+    def _has_own_folder(self, package: str, path: str) -> bool | None:
+        offer = self.package(package)
+        header = next((h for h in offer.build.headers if h.include == path), None) if offer is not None else None
+        if header is None:
+            return None
+        # Where generators install to stands in none of the package's own files.
+        return header.installed != f"include/{path}" if header.source else not self.has_one_include_folder
+
     def _offer(self, name: str) -> Offer | None:
         version = self.target.version(name)
         line = self.surfaces.line(name, self.target.ros) if version else None

@@ -1,7 +1,7 @@
 """Names that differ by a slip, and names that are told apart on purpose."""
 
 import pytest
-from rosimpact.impact.model.flow.misspelling import is_in_namespace, is_slip
+from rosimpact.impact.model.flow.misspelling import is_in_namespace, is_slip_of_name
 
 SLIPS = (
     ("/cmd_vel", "/cmdvel"), ("/wheel_odom", "/wheels_odom"), ("/base/scan_front", "/base/scan_frnot"),
@@ -16,14 +16,14 @@ APART = (
 
 @pytest.mark.parametrize(("one", "other"), SLIPS)
 def test_slips(one: str, other: str):
-    assert is_slip(one, other)
-    assert is_slip(other, one)
+    assert is_slip_of_name(one, other)
+    assert is_slip_of_name(other, one)
 
 
 @pytest.mark.parametrize(("one", "other"), APART)
 def test_told_apart(one: str, other: str):
-    assert not is_slip(one, other)
-    assert not is_slip(other, one)
+    assert not is_slip_of_name(one, other)
+    assert not is_slip_of_name(other, one)
 
 
 @pytest.mark.parametrize(

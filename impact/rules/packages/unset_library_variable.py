@@ -1,4 +1,26 @@
-"""Variables of libraries that targets link and nothing sets."""
+"""unset-library-variable: a target links the variable of a library that nothing finds.
+
+What it does
+    Reports `${X_LIBRARIES}` in target_link_libraries() that no find_package or pkg_check_modules of the package sets,
+    where X is a library that is known, and pkg_check_modules() whose first argument, the prefix of its variables, is
+    REQUIRED.
+
+Why it breaks
+    CMake takes an unknown variable as empty, and the linker misses the library.
+
+Severity
+    error where the target compiles headers of the library and nothing that is found may set the variable; warning
+    otherwise.
+
+Example
+    target_link_libraries(node ${YAML_CPP_LIBRARIES})       # and no find_package(yaml-cpp REQUIRED)
+
+Use instead
+    find_package(yaml-cpp REQUIRED)
+
+Not reported
+    Variables that what is found may set, such as those of Qt and Python.
+"""
 
 import re
 from functools import lru_cache
@@ -6,18 +28,9 @@ from functools import lru_cache
 from ...model.cmake.names import MODULES
 from ...model.view import View
 from ...targets.providers.library import variables
-from ..rule import Diagnostic
+from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-
-TEXTS = {
-    "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
-    "unset module": Text("`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"),
-    "prefix": Text(
-        "`{prefix}` is taken as the prefix of the variables, so `{subject}` is not {prefix}",
-        "pkg_check_modules({variable} {prefix} {subject})",
-    ),
-}
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
 # Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
@@ -28,7 +41,29 @@ _SET_ALONG = re.compile(
 )
 
 
-def check_unset_libraries(view: View, package):
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-find-package",
+    texts={
+        "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
+        "unset module": Text(
+            "`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"
+        ),
+        "prefix": Text(
+            "`{prefix}` is taken as the prefix of the variables, so `{subject}` is not {prefix}",
+            "pkg_check_modules({variable} {prefix} {subject})",
+        ),
+    },
+)
+def unset_library_variable(view: View):
+    for package in view:
+        if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
+            yield from _list_unset(view, package)
+            yield from _list_prefixes(package)
+
+
+def _list_unset(view: View, package):
     """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
     build = package.build
     if build.unresolved or any("$" in f.name for f in build.found):
@@ -100,7 +135,7 @@ def _compiled_with(view: View, package, variable: str, stem: str, owners: set[st
     return False
 
 
-def check_prefixes(view: View, package):
+def _list_prefixes(package):
     """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
     for found in package.build.found:
         if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
@@ -110,4 +145,5 @@ def check_prefixes(view: View, package):
 
 @lru_cache(maxsize=10000)
 def fold(name: str) -> str:
+    """The letters of a library's name, without what its package, key and variables differ in."""
     return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())

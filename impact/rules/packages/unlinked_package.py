@@ -1,29 +1,93 @@
-"""Programs of catkin packages that use a library, and are linked to nothing that brings it."""
+"""unlinked-package: a program compiles headers of a package and links nothing that brings its library.
+
+What it does
+    Reports programs that include a client library (roscpp, rclcpp) and are linked to nothing, and in ROS 1 programs
+    whose own sources compile headers of a library which no component that they are linked to exports.
+
+Why it breaks
+    The linker reports undefined references.
+
+Severity
+    error for programs that include a client library; warning otherwise, since a program may not use what it includes.
+
+Example
+    add_executable(node src/node.cpp)           # which includes ros/ros.h
+
+Use instead
+    add_executable(node src/node.cpp)
+    target_link_libraries(node ${catkin_LIBRARIES})
+
+Not reported
+    Headers that are templates alone; targets that are linked to something of which it cannot be seen what it brings.
+"""
 
 from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
 from ...model.package import IncludeUse
 from ...model.view import View
-from ..rule import Diagnostic
+from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
 from .catkin_links import Exported, linked_packages, list_linked, plain
 
-TEXTS = {
-    "unlinked": Text(
-        "`{target}` compiles `{header}` but links nothing that brings `{subject}`",
-        "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
-    ),
-}
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-find-package",
+    texts={
+        "client library": Text(
+            "`{target}` includes `{header}` but links nothing", "target_link_libraries({target} {item})"
+        ),
+        "unlinked": Text(
+            "`{target}` compiles `{header}` but links nothing that brings `{subject}`",
+            "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
+        ),
+    },
+)
+def unlinked_package(view: View):
+    for package in view:
+        if package.build_type in ("catkin", "ament_cmake"):
+            yield from _list_without_client(view, package)
+        if package.build_type == "catkin" and view.target.ros == 1:
+            yield from _list_unlinked(view, package)
 
 
-def list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+# Headers of client libraries, whose compiled part every program needs that includes them.
+_CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
+
+
+def _list_without_client(view: View, package):
+    """Programs that include a client library and are given nothing to link."""
+    build = package.build
+    if build.unresolved or build.links:
+        return
+    linked = {t.name for t in build.targets if any(link.how in ("link", "ament") for link in t.links)}
+    programs = {
+        t.name: t
+        for t in build.targets
+        if t.kind == "executable" and t.name not in linked and t.sources and view.certain(t.conditions)
+    }
+    for include in package.digest.includes if programs else ():
+        client, item = _CLIENTS.get(include.path, ("", ""))
+        if not client or client in view.workspace.packages or not view.certain(include.conditions):
+            continue
+        if include.role != "build":
+            continue  # such as a test's program that `make all` leaves out
+        for name in include.targets:
+            target = programs.pop(name, None)
+            if target is not None:
+                data = {"target": name, "header": include.path, "item": item}
+                yield Diagnostic(target.at, client, package.name, data, "client library")
+
+
+def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
     """Programs whose own sources the linker most likely misses a library for: they include its headers, and what they
     use of those is not looked at. What libraries of the package miss may come with any library that one of theirs needs
     in turn, which the linker finds by itself."""
     build = package.build
-    if package.build_type != "catkin" or view.target.ros != 1 or build.unresolved:
+    if build.unresolved:
         return
     found = {f.name for f in build.found}
     if any("$" in name for name in found):
@@ -64,7 +128,8 @@ def list_unlinked(view: View, package) -> Iterator[Diagnostic]:
 
 # Headers of classes and functions that stand in a library, so that a program that uses them is linked to it. Headers
 # that are templates, or inline, are left out: who includes those may do without the library. Source: the packages'
-# sources, in which the constructors and functions of these stand in a .cpp file.
+# sources, in which the constructors and functions of these stand in a .cpp file. Stored surfaces tell which functions
+# are inline, and not which ones of a header a program is sure to use: most of these headers have some that are inline.
 _HEADERS = """
     camera_info_manager/camera_info_manager.h control_toolbox/pid.h controller_manager/controller_manager.h
     costmap_2d/costmap_2d_ros.h cv_bridge/cv_bridge.h eigen_conversions/eigen_kdl.h

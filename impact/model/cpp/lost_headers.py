@@ -1,0 +1,209 @@
+"""Headers that bring a name which a file uses, where nothing that the file includes brings it.
+
+Whether an include brings a name is asked of a Machine, which knows what headers of the standard libraries, of Boost, of
+platform libraries, of released packages and of generated interfaces include in a version. Of names that were brought
+along by an earlier version it is known who brought them.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...targets.providers.includes import Machine, announced, offered
+from ...targets.providers.message_headers import package_of, type_in
+from ...targets.providers.standard import bit_of, named_by, offering, oldest
+
+if TYPE_CHECKING:
+    from ..package import NeededHeader
+    from ..view import View
+    from ..workspace import Package
+
+# Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
+# Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
+# Functions that packages add their own forms of.
+_EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTransform"})
+# What compilers have for one processor.
+_OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
+
+_Reach = tuple[frozenset[str], frozenset[str]]
+
+
+class LostHeader(NamedTuple):
+    """A header that nothing brings along to a file which uses one of its names. by, version: what did, or else whose it
+    is. sure: all that is included is known. once: something did. standard: it is one of the standard libraries. now:
+    on the target, else on the newest distro."""
+
+    header: str
+    by: str
+    version: str
+    sure: bool
+    once: bool
+    standard: bool
+    now: bool
+
+
+class _Times(NamedTuple):
+    """A machine that is asked about and those before it. now: it is the target's."""
+
+    machine: Machine
+    earlier: tuple[Machine, ...]
+    now: bool
+
+
+class LostHeaders:
+    """The headers that files of one package lack."""
+
+    def __init__(self, view: View, package: Package):
+        self._view = view
+        self._package = package
+        self._reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
+        self._year = view.language(package)
+
+    @cached_property
+    def _year_asked(self) -> int:
+        """The C++ standard that packages from elsewhere ask for, looked up for the few that need it."""
+        return self._view.language_asked(self._package)
+
+    def find(self, need: NeededHeader) -> LostHeader | None:
+        """The header that a use of a name lacks on the target or, where it lacks none, on the newest distro."""
+        for times in self._list_times(need):
+            lost = _find_lost(self._view, need, self._reaches[need.at.path], self._year, times)
+            if lost is not None and lost.standard and self._year_asked > self._year:
+                return _find_lost(self._view, need, self._reaches[need.at.path], self._year_asked, times)
+            if lost is not None:
+                return lost
+        return None
+
+    def _list_times(self, need: NeededHeader) -> list[_Times]:
+        view = self._view
+        times = [_Times(view.machine, view.earlier_machines, True)]
+        if view.later_machine is not None and view.later_active(need.conditions):
+            times.append(_Times(view.later_machine, (view.machine,), False))
+        return times
+
+
+def _find_lost(view: View, need: NeededHeader, reaches: list[_Reach], year: int, times: _Times) -> LostHeader | None:
+    """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
+    ever did. year: of the C++ standard."""
+    machine, earlier = times.machine, times.earlier
+    standard = bool(bit_of(need.name))
+    if standard and not need.whole and need.name.startswith("std::"):
+        return None  # a reference to a string or stream, which are announced everywhere
+    headers = offering()[need.name] if standard else _list_offering(view, need.name)
+    if not headers or not (
+        machine.names(need.name) if standard else any(machine.includes(header) is not None for header in headers)
+    ):
+        return None
+    wanted, best = frozenset(headers), None
+    bits, made = machine.bits(wanted), type_in(need.name)
+    # To a type that is announced, pointers may be made.
+    pointed = 0 if need.whole or standard else machine.bits(announced(need.name))
+    for reach, own in reaches:
+        brought = machine.brings(need.name, reach, year) if standard else bits & machine.mask(reach)
+        if brought or not wanted.isdisjoint(own):
+            continue
+        if need.name in _EXTENDED and any(package_of(header, machine.ros) is None for header in own):
+            continue  # another package of the workspace may have added one
+        outside = _list_outside(view, need.name, reach, machine)
+        # Of what the workspace generates itself, all that it brings along reaches the file too.
+        if outside is None or (made is not None and not machine.tells_all(reach - own)):
+            continue
+        if standard:
+            dropped = _find_dropped_name(view, need.name, reach, year, machine, earlier)
+            known_gcc = need.name.startswith("std::") and not outside and machine.gcc >= oldest()
+            found = dropped or (("gcc", machine.version("gcc") or "") if known_gcc else None)
+        else:
+            dropped = _find_dropped(view, wanted, reach, machine, earlier)
+            # Whose headers a platform library's bring, no table tells.
+            all_known = made is not None or all(p.kind == "ros" for path in outside for p in view.header(path))
+            found = dropped or (_find_owner(need.name, headers, reach, machine) if all_known else None)
+        if found is None or (best is not None and (best.sure or outside)):
+            continue
+        # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
+        known = not outside or not (standard or machine.of_library(headers[0]))
+        sure = known and not pointed & machine.mask(reach)
+        best = LostHeader(headers[0], *found, sure, dropped is not None, standard, times.now)
+    return best
+
+
+def _list_offering(view: View, name: str) -> tuple[str, ...]:
+    """The headers that offer a name, best first; none for types of interfaces that are the workspace's own, or not
+    known on the target."""
+    made = type_in(name)
+    if made is None:
+        return offered().get(name) or ()
+    known = made.ros == view.target.ros and made.package not in view.workspace.packages
+    return made.headers if known and view.machine.tells(made.headers[0]) else ()
+
+
+def _find_owner(
+    name: str, offering: tuple[str, ...], reach: frozenset[str], machine: Machine
+) -> tuple[str, str] | None:
+    """Whose a name is that nothing ever brought, and its version: a Boost library's, where a file includes some of its
+    headers, or an interface's."""
+    if (made := type_in(name)) is not None:
+        version = machine.version(made.package)
+        return (made.package, version) if version else None
+    if not name.startswith(("boost::", "BOOST_")):
+        return None
+    owners = {owner for header in offering if (owner := machine.owner(header)) is not None}
+    return next((owner for header in sorted(reach) if (owner := machine.owner(header)) in owners), None)
+
+
+def _find_dropped(
+    view: View, wanted: frozenset[str], reach: frozenset[str], machine: Machine, earlier: tuple[Machine, ...]
+) -> tuple[str, str] | None:
+    """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
+    for before in earlier:
+        for header in sorted(reach):
+            if not wanted.isdisjoint(before.brought(header).headers):
+                if view.is_standard(header):
+                    return "gcc", machine.version("gcc") or ""
+                return machine.owner(header)
+    return None
+
+
+def _find_dropped_name(
+    view: View, name: str, reach: frozenset[str], year: int, machine: Machine, earlier: tuple[Machine, ...]
+) -> tuple[str, str] | None:
+    """The same for a name of the standard libraries."""
+    for before in earlier:
+        if not before.names(name):
+            continue
+        for header in sorted(reach):
+            if not before.brings(name, frozenset((header,)), year):
+                continue
+            still = machine.brought(header).standard
+            if view.is_standard(header) or any((named_by(h, before.gcc, year) or 0) & bit_of(name) for h in still):
+                return "gcc", machine.version("gcc") or ""
+            return machine.owner(header)
+    return None
+
+
+def _list_outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
+    """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name.
+
+    Any that the file itself includes may bring a name of the standard library; one whose package depends on the name's
+    may bring another.
+    """
+    outside = {
+        path
+        for path in machine.outside(reach)
+        if not view.is_standard(path)
+        and not _OF_PROCESSOR.search(path)
+        and (path in reach or (view.header(path) and not _GENERATED.search(path)))
+    }
+    if bit_of(name):
+        return None if outside & reach else sorted(outside)
+    if (made := type_in(name)) is not None:
+        owners = {made.package}
+    else:
+        owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
+    for path in outside:
+        around = view.around(path)
+        if not around or (path in reach and machine.knows(path)) or not owners.isdisjoint(around):
+            return None
+    return sorted(outside)

@@ -1,0 +1,100 @@
+"""C++ standards that targets are compiled under on a view's target: what packages set, and what is asked of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..targets.providers.library import default_standard, standard_year
+from ..targets.version import at_least
+from .cmake.links import package_of
+
+if TYPE_CHECKING:
+    from .package import NameUse
+    from .view import View
+    from .workspace import Package
+
+
+def find_standards(view: View, package: Package) -> dict[str, int]:
+    """The years of the C++ standards that targets are compiled under at least: each one's own, and those that what it
+    links asks of its users, in the package, the workspace and the released packages of the target."""
+    targets = {target.name: target for target in package.build.targets}
+    found: dict[str, int] = {}
+    for target in targets.values():
+        year, waiting, seen = standard_year(target.standard) if target.standard else 0, [target.name], set()
+        others: set[str] = set()
+        while waiting:
+            own = targets.get(waiting.pop())
+            if own is None or own.name in seen:
+                continue
+            seen.add(own.name)
+            if own.public_standard:
+                year = max(year, standard_year(own.public_standard))
+            waiting.extend([own.alias_of] if own.alias_of else [])
+            for link in own.links:
+                if link.how in ("link", "ament", "interfaces"):
+                    waiting.append(link.item)
+                    others.add(package_of(link.item))
+        if "catkin" in others:
+            others.update(f.name for f in package.build.found if f.how == "catkin")
+        for name in view.roles.found_with(others - targets.keys()) if others else ():
+            other = view.workspace.packages.get(name)
+            asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
+                view.offers.standard(name)
+            )
+            year = max(year, standard_year(asked) if asked else 0)
+        if year:
+            found[target.name] = year
+    return found
+
+
+def _find_raised(view: View) -> int:
+    """The standard that CMake raises a package's to, since the exported targets of rclcpp and others ask for it. Rclcpp
+    does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
+    if view.target.ros == 1:
+        return 0
+    if not at_least(view.target.version("rclcpp") or "9.0", "9.0"):
+        return 2014
+    return 2020 if at_least(view.target.library("gcc") or "", "15") else 2017
+
+
+def find_failing_standard(
+    view: View, package: Package, use: NameUse, refused_from: int, needs: int
+) -> str | None:
+    """The C++ standard that a use fails under (empty: under any); None where it does not fail. refused_from, needs: the
+    years of the standard that first refuses it and of the one that it needs, 0 for none."""
+    if not refused_from and not needs:
+        return ""
+    build = package.build
+    default = default_standard(view.target)
+    own = [t.standard for t in build.targets if t.name in use.targets and t.standard]
+    fixed = view.standard(package)
+    set_for = ([fixed[0]] if fixed else []) + own
+    have = max((standard_year(number) for number in set_for), default=default)
+    if have is None:
+        return None
+    if not set_for and any(u.kind == "command" for u in build.uses):
+        return None  # a macro of another package may set it
+    if refused_from:
+        return f"C++{have % 100:02d}" if have >= refused_from else None
+    if max(have, _find_raised(view)) >= needs or not use.targets or use.role != "build":
+        return None
+    if not view.certain(use.conditions):
+        return None
+    return f"C++{have % 100:02d}"
+
+
+# Macros that come with the build tools, and set no standard.
+_HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_message", "add_service", "add_action",
+             "ros", "rosidl_", "pkg_", "qt", "gtest_", "class_loader_", "pluginlib_", "rclcpp_components_",
+             "protobuf_", "install_", "check_", "find_", "nodelet_", "orocos_", "configure_")  # fmt: skip
+
+
+def may_be_set_elsewhere(view: View, package: Package) -> bool:
+    """True where a macro of another package may set the standard."""
+    if any(u.kind == "command" and not u.name.startswith(_HARMLESS) for u in package.build.uses):
+        return True
+    if any("include(" in reason for _, reason in package.build.unresolved):
+        return True
+    found = view.spread(f.name for f in package.build.found)
+    own = [view.workspace.packages[name] for name in found if name in view.workspace.packages]
+    return any(path.endswith((".cmake", ".cmake.in", ".cmake.em")) for other in own for path in other.files)

@@ -1,0 +1,130 @@
+"""What is known of the headers that packages include, as the rules on them ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...model.misspelling import is_slip
+from ...model.package import IncludeUse
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.availability import of_row
+from ...targets.providers.library import versioned_folder
+from ...targets.symbol import Availability, Symbol
+from ...targets.target import Change
+from ..rule import Cure
+from ..severity import Doubt, doubts_of_place
+from .moved_header import respell
+from .parameter_header import ParameterHeaders
+
+
+class HeaderLoss(NamedTuple):
+    """What the first source that knows of a header tells of it. found: how the target stands to it; None where it
+    cannot be told. kind: of the text, where the state of that does not say it. changed: see Upcoming. ordered: places
+    in sources go before those in headers."""
+
+    found: Availability | None
+    kind: str = ""
+    fix: tuple[Cure, ...] = ()
+    changed: str = ""
+    ordered: bool = False
+
+
+class IncludedHeaders:
+    """Headers of others that a workspace includes, on one target."""
+
+    def __init__(self, view: View):
+        self._view = view
+        kinds = ("header-removed", "header-renamed", "header-moved")
+        self._gone = {c.old: c for c in view.changes(*kinds) if c.state == "removed" and c.old}
+        self._early = {c.new: c for c in view.changes(*kinds[1:]) if c.state == "absent" and c.new}
+        self._quiet: set[str] = set()
+        self._parameters = ParameterHeaders(view)
+
+    def list_asked(self, package: Package) -> Iterator[tuple[IncludeUse, tuple[Doubt, ...]]]:
+        """The includes of a package that the target compiles, with what speaks against an error there. Those of headers
+        that the workspace provides are left out, and those that rules of their own report."""
+        view = self._view
+        for include in package.digest.includes:
+            path = include.path
+            if path in self._quiet or not view.active(include.conditions):
+                continue
+            if self._parameters.find_fault(include):
+                continue
+            if view.workspace.provides_header(path):
+                self._quiet.add(path)
+                continue
+            if versioned_folder(view.target, path) is None:
+                doubts = doubts_of_place(view, include.role, include.conditions)
+                yield include, doubts if include.targets else (*doubts, Doubt.UNCOMPILED)
+
+    def skip(self, path: str) -> None:
+        """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
+        known = path in self._gone or path in self._early or path in self._view.coming
+        if not known and self._view.header(path):
+            self._quiet.add(path)
+
+    def find_loss(self, package: Package, include: IncludeUse) -> HeaderLoss | None:
+        """What reviewed rows, stored releases and platforms tell of an included header; None where they have it, or
+        never had."""
+        view, path = self._view, include.path
+        symbol = Symbol("header", path)
+        if (change := self._find_row(path)) is not None:
+            found = of_row(symbol, change)
+            as_it_is = found.state == "removed" and change.kind != "header-removed"
+            return HeaderLoss(found, fix=respell(view, package, include, found.replacement) if as_it_is else ())
+        change, ahead = view.coming.get(path, (None, None))
+        is_header_row = change is not None and change.kind.startswith("header")
+        if change is not None and ahead is not None and is_header_row and view.active_on(ahead, include.conditions):
+            fix = respell(view, package, include, change.new) if change.kind != "header-removed" else ()
+            changed = f"{change.package} {path}"
+            return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, changed=changed, ordered=True)
+        found = view.header_availability(path)
+        if found is not None and (found.is_missing or found.state == "upcoming"):
+            fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
+            return HeaderLoss(found, fix=fix, ordered=True)
+        found = view.lost_header(path)
+        if found is None:
+            return None
+        if found.form == "platform" and (view.opaque_libraries(package, path) or view.blind(package)):
+            return HeaderLoss(None)  # something that comes along has contents that are not known
+        return HeaderLoss(found, found.form)
+
+    def _find_row(self, path: str) -> Change | None:
+        """The reviewed row on a path that the target lacks."""
+        view = self._view
+        change = self._gone.get(path)
+        if change is not None and not view.nested_header(change.package, path):
+            return change
+        change = self._early.get(path)
+        return change if change is not None and view.has_released_header(change.package, path) is False else None
+
+
+def included_headers(view: View) -> IncludedHeaders:
+    """Those of a view, made once."""
+    key = "included headers", ""
+    if key not in view.worked_out:
+        view.worked_out[key] = IncludedHeaders(view)
+    return view.worked_out[key]
+
+
+# Letters of a file's name: shorter ones are alike by chance.
+_SHORTEST = 8
+
+
+def find_misspelt(view: View, package: Package, path: str) -> str | None:
+    """The header of the package that an include path misses by one letter; None where somebody has what it names."""
+    if view.header(path) or len(path.rpartition("/")[2]) < _SHORTEST:
+        return None
+    bare = "/" not in path
+    for header in package.digest.headers:
+        own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
+        if is_slip(path, own):
+            return own
+    return None
+
+
+def is_bridge(view: View, package: Package) -> bool:
+    """Whether a package is built for both generations of ROS, and therefore includes headers of both."""
+    return view.target.ros == 2 and any(include.path.startswith("ros/") for include in package.digest.includes)

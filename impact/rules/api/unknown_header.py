@@ -1,0 +1,82 @@
+"""unknown-header: the path of an included header is spelt as nobody has it.
+
+What it does
+    Reports `#include` lines whose path no version of anything has: spellings of generated headers that belong to the
+    other ROS generation, or to C where rclcpp is used, or in another case; generated headers whose interface no version
+    of the package has, or another package of the workspace has; own headers with a letter wrong.
+
+Why it breaks
+    The compiler stops with "No such file or directory".
+
+Severity
+    error for compiled code that is not guarded, and for an installed header that includes what nobody has, so that
+    nobody can compile it; warning for tests of ROS 1, under CMake conditions that are not known, and for headers of C
+    where nothing else brings the C++ types; note for examples, for other headers that the package does not compile
+    itself, and under tests of the code itself.
+
+Example
+    #include <sensor_msgs/LaserScan.h>                  // in ROS 2
+
+Use instead
+    #include <sensor_msgs/msg/laser_scan.hpp>
+
+Not reported
+    Includes under `#if __has_include(...)`; ROS 1 names in a package that also includes ROS 1 headers, as bridges do;
+    what a later or an earlier version has (removed-header reports it).
+"""
+
+from collections.abc import Iterator
+
+from ...model.package import IncludeUse
+from ...model.view import View
+from ...model.workspace import Package
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .included_headers import find_misspelt, included_headers, is_bridge
+from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="removed-header",
+    texts={
+        **TEXTS,
+        "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
+    },
+)
+def unknown_header(view: View):
+    for package in view:
+        yield from _list_unknown(view, package)
+
+
+def _list_unknown(view: View, package: Package) -> Iterator[Diagnostic]:
+    headers = included_headers(view)
+    for include, doubts in headers.list_asked(package):
+        path, at = include.path, include.at
+        own, fault = find_misspelt(view, package, path), find_interface_fault(view, path)
+        if (own is None and fault is None) or headers.find_loss(package, include) is not None:
+            continue
+        if own is not None:
+            doubts = _doubts_of_misspelt(view, package, include)
+            yield Diagnostic(at, path, package.name, {"replacement": own}, "misspelt", doubts)
+        elif fault is not None and fault.kind == "c":
+            of_c = doubts_of_c_header(view, package, include)
+            if of_c is not None:
+                yield Diagnostic(at, path, package.name, fault.data, "c", of_c)
+        elif fault is not None and fault.found is None and not is_bridge(view, package):
+            if fault.kind == "never generated" and include.public and include.role != "aside":
+                # Nobody can compile what is installed.
+                doubts = () if view.certain(include.conditions) else (Doubt.GUARDED,)
+            yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts)
+
+
+def _doubts_of_misspelt(view: View, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+    """Nobody can compile an installed header with it, nor the package itself where it does."""
+    if include.role == "aside" or not (include.targets or include.public):
+        return (Doubt.UNCOMPILED,)
+    name = include.path.rpartition("/")[2]
+    if package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made):
+        return (Doubt.INCOMPLETE,)  # the build may make it
+    return () if view.certain(include.conditions) else (Doubt.GUARDED,)

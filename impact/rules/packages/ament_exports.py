@@ -1,0 +1,51 @@
+"""The exports of ament packages, as the rules on them ask for it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ...model.cmake.build import Exported
+from ...model.view import View
+from ...model.workspace import Package
+
+_HOWS = frozenset(
+    {"ament_export_targets", "ament_export_libraries", "ament_export_include_directories", "ament_export_dependencies"}
+)
+
+
+class AmentExports(NamedTuple):
+    """What an ament package exports. exports: those that count on the target. dependencies: the packages of
+    ament_export_dependencies(). found: all that dependants find along with it."""
+
+    exports: list[Exported]
+    dependencies: frozenset[str]
+    found: frozenset[str]
+
+    @property
+    def hows(self) -> frozenset[str]:
+        """The commands that export something."""
+        return frozenset(export.how for export in self.exports)
+
+
+def read_ament_exports(view: View, package: Package) -> AmentExports | None:
+    """The exports of an ament package; None where it exports nothing, or where what it exports cannot be seen."""
+    if package.build.ament_package is None:
+        return None
+    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
+    if not exports_something(exports) or any("$" in name for name in dependencies):
+        return None
+    if any(f.how == "ament_auto" for f in package.build.found):
+        return None
+    named = dependencies | {f.name for f in package.build.handed_on}
+    return AmentExports(exports, dependencies, view.roles.found_with(named))
+
+
+def exports_something(exports: list[Exported]) -> bool:
+    """Whether a package of ament calls a command that exports packages, targets, libraries or include directories."""
+    return any(export.how in _HOWS for export in exports)
+
+
+def list_installed_targets(package: Package) -> frozenset[str]:
+    """The targets that install rules name."""
+    return frozenset(item for rule in package.build.installs if rule.kind == "targets" for item in rule.items)

@@ -1,0 +1,82 @@
+"""cmake-name-case: find_package is given the name of a package in another case than its configuration has.
+
+What it does
+    Reports names in find_package that are known in another case alone: in general, or with the target's version of a
+    library.
+
+Why it breaks
+    CMake looks for files of this very name, such as `FindEigen3.cmake` or `assimpConfig.cmake`, and stops.
+
+Severity
+    error for a package that is required, where all that the platform has is known; warning otherwise.
+
+Example
+    find_package(ASSIMP REQUIRED)               # assimp has `assimpConfig.cmake` since 5.1
+
+Use instead
+    find_package(assimp REQUIRED)
+
+Not reported
+    Names in lower case, to which an `x-config.cmake` may answer; names with several spellings; find modules of the
+    workspace.
+"""
+
+from ...model.view import View
+from ...targets.providers.library import not_answering
+from ..fix_actions import Replace
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="misspelt-cmake-name",
+    texts={
+        "case": Text("CMake package `{subject}` not found: names are case-sensitive", "did you mean `{replacement}`?"),
+        "case since": Text(
+            "CMake package `{subject}` not found: {replacement} {version} has `{replacement}Config.cmake`, and names "
+            "are case-sensitive",
+            "write `{replacement}`",
+        ),
+    },
+)
+def cmake_name_case(view: View):
+    for package in view:
+        yield from _list_unknown_spellings(view, package)
+        yield from _list_lost_spellings(view, package)
+
+
+def _list_unknown_spellings(view: View, package):
+    """find_package names that are known in another case alone: CMake looks for files of this very name."""
+    own = view.workspace.cmake_files
+    for f in package.build.found:
+        if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view.is_package(f.name):
+            continue
+        if f.name.islower():
+            continue  # `x-config.cmake` answers to it, which no list of files need show
+        if {f"Find{f.name}.cmake", f"{f.name}Config.cmake"} & own or any(p.sure for p in view.cmake(f.name)):
+            continue
+        meant = [n for n in view.providers.spellings(f.name) if n != f.name]
+        if len(meant) != 1 or not view.cmake(f.name) or meant[0] == f.name.lower():
+            continue
+        # Whoever brings the module along under the other name means that one, whatever the platform has.
+        sure = f"Find{meant[0]}.cmake" in own or view.target.platform in view.providers.platforms
+        fix = (Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),)
+        doubts = (sure or Doubt.INCOMPLETE,)
+        yield Diagnostic(f.at, f.name, package.name, {"replacement": meant[0]}, "case", doubts, fix=fix)
+
+
+def _list_lost_spellings(view: View, package):
+    """find_package names to which the target's version of a library answers no longer, where the build needs them."""
+    linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
+    for f in package.build.found:
+        if f.how != "find_package" or f.via or not (f.required or f.name in linked) or not view.active(f.conditions):
+            continue
+        version = not_answering(view.target, f.name)
+        if not version or f"Find{f.name}.cmake" in view.workspace.cmake_files:
+            continue
+        data = {"replacement": f.name.lower(), "version": version}
+        doubts = (f.required or Doubt.OPTIONAL, view.certain(f.conditions) or Doubt.CONDITIONAL)
+        yield Diagnostic(f.at, f.name, package.name, data, "case since", doubts)

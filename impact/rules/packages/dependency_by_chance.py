@@ -1,0 +1,58 @@
+"""dependency-by-chance: something of another package is used, and only comes along with another dependency.
+
+What it does
+    Reports what undeclared-package looks for, where something that the manifest declares brings it by chance: installed
+    for another role (a test tool brings what a node imports), or by a package that does not hand it on (by its CMake
+    exports or `build_export_depend`).
+
+Why it breaks
+    It is there until the other package drops it. The build farm, which installs no dependencies to run, lacks it today.
+
+Severity
+    error for what CMake or the compiler needs and only dependencies to run bring, which the build farm does not
+    install; warning otherwise.
+
+Example
+    find_package(angles REQUIRED)               # and package.xml declares robot_localization, which uses angles
+
+Use instead
+    <depend>angles</depend>
+
+Not reported
+    What a declared package exports; modules and nodes that come along with a declared package in the same role; what
+    whoever starts launch files has; conditional code.
+"""
+
+from ...model.view import View, weight
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .clean_machine import doubts_of_chance, is_chance
+from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="undeclared-package",
+    texts=Text("{use}, and `{subject}` only comes along with {sources}", DECLARE),
+)
+def dependency_by_chance(view: View):
+    for package in view:
+        declared = view.declared(package)
+        for name, needs in find_undeclared(view, package).borrowed.items():
+            strong = [
+                need
+                for need in needs
+                if need.certain and (need.required or need.how == "program") and is_chance(view, package, need, name)
+            ]
+            if strong:
+                first = min(strong, key=weight)
+                sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
+                yield Diagnostic(
+                    first.at,
+                    name,
+                    package.name,
+                    {**describe_need(package, first), "sources": sources},
+                    doubts=doubts_of_chance(view, package, first),
+                    fix=declare_need(view, package, first, name),
+                )

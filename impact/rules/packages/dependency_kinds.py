@@ -1,0 +1,76 @@
+"""Dependencies that are declared, and not for what they are used, as the rules on them ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from typing import NamedTuple
+
+from ...model.view import Need, View
+from ...model.workspace import Package
+from ..evidence import circular
+from ..fix_actions import Declare, Remove
+
+_FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
+_FOR_DEPENDANTS = frozenset({"build_export", "exec", "buildtool_export"})
+FOR_RUN = frozenset({"exec", "build_export"})
+"""Kinds of dependencies that install what a program needs to run."""
+
+
+class WrongKind(NamedTuple):
+    """A need whose package is declared for something else alone. name: as declared. kinds: those declared. lacking:
+    what it is not declared for: `build`, `run` or `dependants`."""
+
+    need: Need
+    name: str
+    kinds: Set[str]
+    lacking: str
+
+
+def list_wrong_kinds(view: View, package: Package) -> list[WrongKind]:
+    """The first such need of each declared name, the weightiest first."""
+    key = "wrong kinds", package.name
+    if key not in view.worked_out:
+        view.worked_out[key] = list(_list_wrong_kinds(view, package))
+    return view.worked_out[key]
+
+
+def _list_wrong_kinds(view: View, package: Package) -> Iterator[WrongKind]:
+    declared = view.declared(package)
+    seen: set[str] = set()
+    brought: dict[Set[str], frozenset[str]] = {}
+    for need in view.weighed(package):
+        own = [p.name for p in need.providers if p.name in declared]
+        if not own or not need.certain or not need.required or any(name in seen for name in own):
+            continue
+        kinds = frozenset().union(*(declared[name] for name in own))
+        lacking, fitting = _find_lacking(need, kinds)
+        if not lacking:
+            continue
+        if fitting not in brought:
+            brought[fitting] = view.spread(name for name, of_name in declared.items() if of_name & fitting)
+        if not view.answered(need.providers, brought[fitting]):
+            seen.add(own[0])
+            yield WrongKind(need, own[0], kinds, lacking)
+
+
+def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
+    """What a need is not declared for, empty where the kinds will do, and the kinds that would."""
+    if need.role == "build" and need.how in ("find_package", "component", "include"):
+        if not kinds & _FOR_BUILD:
+            return "build", _FOR_BUILD
+        if need.public and need.how == "include" and not kinds & {"build_export", "exec"}:
+            return "dependants", _FOR_DEPENDANTS
+    elif need.role == "run" and need.how in ("import", "launch") and not kinds & FOR_RUN:
+        return "run", FOR_RUN
+    return "", frozenset()
+
+
+def fix_kind(view: View, package: Package, name: str, tag: str, kinds: Set[str]) -> tuple[Declare | Remove, ...]:
+    """Declares a name for more than it is declared for. What is declared for tests alone is declared anew, since
+    `depend` beside `test_depend` says one thing twice."""
+    path = package.digest.manifest_path
+    if circular(view, package, name):
+        return ()
+    if kinds == {"test"} and tag == "depend":
+        return (Remove(path, name, "test_depend"), Declare(path, name, tag))
+    return (Declare(path, name, tag),)

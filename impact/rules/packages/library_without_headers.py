@@ -1,0 +1,116 @@
+"""library-without-headers: the declared key of a library brings no headers, and the code includes them.
+
+What it does
+    Reports rosdep keys of platform libraries whose Debian packages hold the library alone (`libtinyxml2-6`), where
+    built code, or an installed header, includes its headers.
+
+Why it breaks
+    The compiler misses the headers, here or in packages that include the installed header.
+
+Severity
+    error where nothing that is declared brings the headers that compiled code includes; warning otherwise.
+
+Example
+    <depend>libopencv-core</depend>
+
+Use instead
+    <depend>libopencv-dev</depend>
+
+Not reported
+    Keys beside another one that brings the headers.
+"""
+
+import re
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .dependency_kinds import FOR_RUN, fix_kind
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="wrong-dependency-kind",
+    texts={
+        "bare": Text(
+            "`{declared}` brings no headers, but `{header}` needs those of `{subject}`", "declare `{subject}`"
+        ),
+        "public bare": Text(
+            "an installed header includes `{header}`, but dependants get `{declared}`, which has no headers",
+            "declare `{subject}` as `<{tag}>`",
+        ),
+    },
+)
+def library_without_headers(view: View):
+    for package in view:
+        yield from _list_bare(view, package)
+
+
+def _list_bare(view: View, package):
+    """Keys that install a library without its headers, where built code wants the headers."""
+    declared = view.declared(package)
+    bare = {
+        name: debian
+        for name in declared
+        if name.startswith("lib") and (debian := view.debian(name)) and not any(d.endswith("-dev") for d in debian)
+    }
+    seen = set()
+    for need in view.weighed(package) if bare else ():
+        if need.how == "include" and need.public and need.certain:
+            yield from _list_handed_on(view, package, declared, bare, need, seen)
+        if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
+            continue
+        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in seen:
+            continue
+        wanted = {
+            re.sub(r"(-all)?-dev\Z", "", debian)
+            for provider in need.providers
+            if provider.kind == "system"
+            for debian in view.debian(provider.name)
+            if debian.endswith("-dev")
+        }
+        name = next((n for n, debian in bare.items() if any(_same_library(d, w) for d in debian for w in wanted)), None)
+        right = next((p.name for p in need.providers if view.available(p.name)), None)
+        if name is None or right is None:
+            continue
+        seen.add(need.providers[0].name)
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        data, doubts = {"declared": name, "header": need.subject}, (_lacks(view, package, need) or Doubt.INCOMPLETE,)
+        yield Diagnostic(view.manifest_place(package, place), right, package.name, data, "bare", doubts)
+
+
+def _lacks(view: View, package, need) -> bool:
+    """True when compiled code is sure not to find the headers: nothing that is declared brings them in turn."""
+    if need.how == "include" and not need.targets:
+        return False
+    if not need.required or view.blind(package) or view.opaque_libraries(package):
+        return False
+    return not view.answered(need.providers, view.may_bring(package))
+
+
+def _list_handed_on(view: View, package, declared, bare, need, seen):
+    """A library whose headers are declared for building, and without headers for whoever includes the public header."""
+    right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
+    if right is None or right in seen:
+        return
+    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.debian(right)}
+    name = next(
+        (n for n, installed in bare.items() if any(_same_library(d, s) for d in installed for s in stems)), None
+    )
+    if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
+        return
+    seen.add(right)
+    place = next(d for d in package.manifest.dependencies if d.name == name)
+    tag = "run_depend" if package.manifest.format == 1 else "depend"
+    data = {"declared": name, "header": need.subject, "tag": tag}
+    fix = fix_kind(view, package, right, "depend", declared[right])
+    at = view.manifest_place(package, place)
+    yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix)
+
+
+def _same_library(installed: str, stem: str) -> bool:
+    """True when a package without headers belongs to the library: `libboost-thread1.71.0` to `libboost`."""
+    rest = installed[len(stem) :]
+    return len(stem) > 4 and installed.startswith(stem) and (not rest or rest[0] in "-0123456789.")

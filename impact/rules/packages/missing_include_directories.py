@@ -1,0 +1,78 @@
+"""missing-include-directories: a package of catkin finds others and no target gets their include directories.
+
+What it does
+    Reports packages that call find_package(catkin REQUIRED COMPONENTS ...), compile headers of ROS, and use
+    `catkin_INCLUDE_DIRS` nowhere.
+
+Why it breaks
+    The compiler stops: "No such file or directory". Until Jade the setup files of ROS put its folder on CPATH.
+
+Severity
+    error since Kinetic; warning before.
+
+Example
+    add_executable(node src/node.cpp)           # and no include_directories(${catkin_INCLUDE_DIRS})
+
+Use instead
+    include_directories(${catkin_INCLUDE_DIRS})
+
+Not reported
+    Packages that use the include directories of any package of ROS, since all of ROS lies in one folder.
+"""
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-find-package",
+    texts=Text(
+        "`{target}` includes `{header}` but does not get {subject}", "include_directories(${{catkin_INCLUDE_DIRS}})"
+    ),
+)
+def missing_include_directories(view: View):
+    for package in view:
+        if package.build_type == "catkin":
+            yield from _list_without(view, package)
+
+
+def _list_without(view: View, package):
+    """catkin packages that are found, and whose include directories no target gets."""
+    build = package.build
+    if not any(f.how == "catkin" for f in build.found) or build.unresolved:
+        return
+    given = " ".join(
+        [item for item, _ in build.include_dirs]
+        + [link.item for t in build.targets for link in t.links if link.how == "include"]
+    )
+    if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
+        return
+    if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
+        return  # all of /opt/ros lies in one folder
+    for target in build.targets:
+        if target.kind not in ("executable", "library") or not view.certain(target.conditions):
+            continue
+        include = next(
+            (
+                i
+                for i in package.digest.includes
+                if target.name in i.targets
+                and view.certain(i.conditions)
+                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))
+            ),
+            None,
+        )
+        if include is not None:
+            data = {"target": target.name, "header": include.path}
+            doubts = (Doubt.LUCKY,) if view.target.distro in _WITH_CPATH else ()
+            subject = "catkin_INCLUDE_DIRS"
+            yield Diagnostic(target.at, subject, package.name, data, doubts=doubts)
+            return
+
+
+# Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
+_WITH_CPATH = ("groovy", "hydro", "indigo", "jade")

@@ -1,0 +1,52 @@
+"""missing-message-generation: messages are generated, and their generator is not found.
+
+What it does
+    Reports packages of ROS 1 that call generate_messages() and do not find message_generation, which brings the
+    generators of all languages.
+
+Why it breaks
+    Nothing generates the headers and modules, so that the code which includes them does not compile.
+
+Severity
+    error where nothing that is found brings it; warning where another package happens to, or may.
+
+Example
+    find_package(catkin REQUIRED COMPONENTS std_msgs)
+
+Use instead
+    find_package(catkin REQUIRED COMPONENTS std_msgs message_generation)
+
+Not reported
+    Packages that find a generator themselves, or genmsg, which looks for those that are installed.
+"""
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-interface-wiring",
+    texts=Text(
+        "messages are generated but `{subject}` is not found[[; only `{through}` brings it]]",
+        "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...)",
+    ),
+)
+def missing_message_generation(view: View):
+    for package in view:
+        if package.build_type != "catkin":
+            continue
+        generated = [g for g in package.build.generated if g.how == "catkin" and view.active(g.conditions)]
+        found = {f.name for f in package.build.found}
+        if not generated or "message_generation" in found:
+            continue
+        # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
+        generators = {*view.roles.exports("message_generation")} - {"genmsg"}
+        if found & generators or generators & view.spread(found & {"genmsg"}):
+            continue
+        through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
+        doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
+        yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)

@@ -1,0 +1,123 @@
+"""misspelt-cmake-variable: a variable of a package that CMake finds is misspelt, and therefore empty.
+
+What it does
+    Reports variables such as `Eigen3_INCLUDE_DIR` that no find_package sets, one edit or case away from one that a
+    find_package of the same package does set.
+
+Why it breaks
+    CMake takes an unknown variable as empty and says nothing: an include folder or a library is missing later on.
+
+Severity
+    warning.
+
+Example
+    find_package(OpenCV REQUIRED)
+    include_directories(${OPENCV_INCLUDE_DIRS})
+
+Use instead
+    include_directories(${OpenCV_INCLUDE_DIRS})
+
+Not reported
+    Variables of packages that somebody is known to provide under that spelling, and those that other commands set.
+"""
+
+import re
+
+from ...model.misspelling import is_slip
+from ...model.view import View
+from ...targets.providers.library import variables
+from ..fix_actions import Replace
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+_SUFFIXES = (
+    "_INCLUDE_DIRS",
+    "_INCLUDE_DIR",
+    "_LIBRARIES",
+    "_LIBRARY",
+    "_LIBS",
+    "_EXPORTED_TARGETS",
+    "_DEFINITIONS",
+    "_VERSION",
+)
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    group="misspelt-cmake-name",
+    texts={
+        "variable": Text("nothing sets `{subject}`; find_package({found}) is called", "write `{replacement}`"),
+        "other variable": Text(
+            "find_package({found}) sets `{variable}`, so `{subject}` is empty", "write `{replacement}`"
+        ),
+    },
+)
+def misspelt_cmake_variable(view: View):
+    for package in view:
+        yield from _list_misspelt(view, package)
+
+
+def _is_misspelt(stem: str, name: str) -> bool:
+    """True when the stem of a variable is a letter or an underscore away from a package's name; a library's variables
+    often have another number or other separators in them than its name."""
+    letters = re.sub(r"[\W_\d]", "", name)
+    return (
+        len(letters) > 4
+        and is_slip(stem, name)
+        and stem.lower() != name.lower()
+        and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
+    )
+
+
+def _set_by_hand(package) -> set[str]:
+    """Variables that calls other than find_package() name the beginning of."""
+    return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
+
+
+def _list_misspelt(view: View, package):
+    """Variables that only differ in case, or by a letter, from what a find_package of the package sets."""
+    found = sorted({f.name for f in package.build.found})
+    folded = {name.lower(): name for name in found}
+    seen = set()
+    for use in package.build.uses:
+        if use.name in seen or use.kind != "variable" or not view.active(use.conditions):
+            continue
+        for suffix in _SUFFIXES:
+            if use.name.endswith(suffix):
+                stem = use.name[: -len(suffix)]
+                break
+        else:
+            continue
+        meant = next((name for name in found if name.isidentifier() and _is_misspelt(stem, name)), None)
+        if meant is not None and not view.cmake(stem) and use.name not in _set_by_hand(package):
+            seen.add(use.name)
+            yield _diagnose_variable(package, use, meant, f"{meant}{suffix}", "variable")
+            continue
+        if stem.lower() not in folded or (stem in found and variables(stem) is None):
+            continue
+        meant = folded[stem.lower()]
+        sets = variables(meant)
+        if meant == "Eigen3" and "eigen3_cmake_module" in found:
+            continue  # it sets the variables in both spellings
+        if sets is None or use.name in sets:
+            continue
+        right = next((v for v in sorted(sets) if v.endswith(suffix)), None)
+        if right is None:
+            right = next(
+                (v for v in sorted(sets) if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None
+            )
+        if right is not None:
+            seen.add(use.name)
+            if use.name in _set_by_hand(package):
+                continue
+            yield _diagnose_variable(package, use, meant, right, "other variable")
+
+
+def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Diagnostic:
+    """That a variable is empty, where another one that a find_package() sets was meant."""
+    new = f"${{{variable}}}"
+    fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", new),)
+    data = {"found": found, "variable": variable, "replacement": new}
+    return Diagnostic(use.at, use.name, package.name, data, kind, (Doubt.INCOMPLETE,), fix=fix)

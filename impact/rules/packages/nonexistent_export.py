@@ -1,0 +1,154 @@
+"""nonexistent-export: a package exports an include directory, a library or a name that does not exist.
+
+What it does
+    Compares what a package exports with what is there: include directories that do not exist, libraries that no
+    command makes or that are not installed, and system libraries under a name whose variables nothing sets.
+
+Why it breaks
+    The package's own configuration stops, or that of every package that finds it: the exported configuration names a
+    library that was never built.
+
+Severity
+    error where the package's own configuration stops (an include directory that does not exist), for a library of its
+    own that catkin_package() exports and no command makes, and for a library that is exported and not installed;
+    warning where dependants are not linked to it, or a name in DEPENDS is misspelt; note for other names in DEPENDS.
+
+Example
+    ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
+
+Use instead
+    ament_export_libraries(arm_controller)
+
+Not reported
+    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.providers.library import variables
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .ament_exports import list_installed_targets, read_ament_exports
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-export",
+    texts={
+        "directory": Text(
+            "the exported include directory `{directory}` does not exist, so catkin stops",
+            "create it, or drop INCLUDE_DIRS",
+        ),
+        "no target": Text(
+            "the exported library `{subject}` is not a target of `{package}`", "export the library's target name"
+        ),
+        "system": Text(
+            "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing",
+            "{advice}",
+        ),
+        "not installed": Text(
+            "the exported library `{subject}` is not installed, so find_package({package}) stops",
+            "add it to install(TARGETS ...)",
+        ),
+        "not built": Text(
+            "the exported library `{subject}` is never built, so dependants are not linked to it",
+            "export what the package builds, or drop it",
+        ),
+    },
+)
+def nonexistent_export(view: View):
+    for package in view:
+        if package.build.catkin_package is not None:
+            yield from _list_directories(view, package)
+            yield from _list_of_catkin(view, package)
+        ament = read_ament_exports(view, package)
+        if ament is not None:
+            yield from _list_of_ament(view, package, ament.exports)
+
+
+def _list_directories(view: View, package):
+    made = {posixpath.normpath(i.destination) for i in package.build.installs}
+    for export in package.build.exports:
+        if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
+            continue
+        if export.item.startswith("/") or export.item in made:
+            continue
+        item = posixpath.normpath(export.item)
+        inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
+        if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
+            continue
+        yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
+
+
+def _list_of_catkin(view: View, package):
+    targets = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
+    found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
+    for export in package.build.exports:
+        if not view.active(export.conditions) or "$" in export.item:
+            continue
+        if export.how == "libraries" and export.item not in targets and not package.build.unresolved:
+            if (
+                "/" in export.item
+                or export.item.startswith("-")
+                or export.item.endswith((".so", ".a"))
+                or view.cmake(export.item)
+            ):
+                continue
+            sure = view.certain(export.conditions) and _is_own(view, package, export.item)
+            doubts = () if sure else (Doubt.AMBIGUOUS,)
+            yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
+        elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
+            near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
+            other = near.upper() if near == "Eigen3" else near
+            advice = f"write `{other}`" if near else f"find `{export.item}` first"
+            doubts = (Doubt.DISTURBS,) if near else (Doubt.DISPENSABLE,)
+            yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
+
+
+def _is_own(view: View, package, library: str) -> bool:
+    """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
+    if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
+        return False
+    return all(link.item != library for target in package.build.targets for link in target.links)
+
+
+def _sets(package, stem: str) -> bool:
+    """True when a find_package of the package sets variables that begin with the stem."""
+    for found in package.build.found:
+        names = variables(found.name)
+        if names is None and found.name.lower() == stem.lower():
+            return True
+        if names and any(
+            name.startswith(stem + "_") and not name.endswith(("FOUND", "VERSION", "DIR")) for name in names
+        ):
+            return True
+    return False
+
+
+def _list_of_ament(view: View, package: Package, exports) -> Iterator[Diagnostic]:
+    """ament_export_libraries() of what no target makes, of which dependants are only warned, or of a target that is not
+    installed, at which they stop."""
+    targets = {t.name: t for t in package.build.targets if t.kind != "unknown"}
+    names = {*targets, *(t.output_name for t in targets.values())}
+    installed = list_installed_targets(package)
+    if package.build.unresolved or any("$" in name for name in (*names, *installed)):
+        return
+    if any(t.kind in ("external", "fetched") for t in targets.values()):
+        return  # another build system makes libraries of its own
+    for export in exports:
+        item = export.item
+        if export.how != "ament_export_libraries" or re.search(r"[$/.:]|^-", item):
+            continue
+        if not view.certain(export.conditions):
+            continue
+        target = targets.get(item)
+        if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
+            yield Diagnostic(export.at, item, package.name, kind="not installed")
+        elif item not in names and (not view.cmake(item) or item == package.name):
+            yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))

@@ -1,0 +1,62 @@
+"""system-library-component: catkin is asked for a system library as for one of its packages.
+
+What it does
+    Reports components of find_package(catkin) that are system libraries on the target, and no packages of catkin.
+
+Why it breaks
+    CMake stops: catkin looks for the configuration file of a package of that name.
+
+Severity
+    error; warning for components that are not required, and where an underlay may have a package of that name.
+
+Example
+    find_package(catkin REQUIRED COMPONENTS roscpp bullet)
+
+Use instead
+    find_package(catkin REQUIRED COMPONENTS roscpp)
+    find_package(Bullet REQUIRED)
+
+Not reported
+    Names that were found before on their own, since CMake remembers where; packages of the workspace.
+"""
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-find-package",
+    texts=Text(
+        "`{subject}` is a system library in {distro}, not a catkin component",
+        "find_package({subject} REQUIRED), or pkg-config, on its own",
+    ),
+)
+def system_library_component(view: View):
+    for package in view:
+        if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
+            yield from _list_components(view, package)
+
+
+def _list_components(view: View, package):
+    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components. One
+    that was found before is found again: CMake remembers where it is."""
+    before: set[str] = set()
+    for found in package.build.found:
+        name = found.name
+        if found.how == "find_package":
+            before.add(name)
+        if found.how != "catkin" or name == "catkin" or name in before or not view.certain(found.conditions):
+            continue
+        if found.quiet and not found.required:
+            continue
+        if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
+            continue
+        key = view.target.resolve(name) is not None
+        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
+            continue
+        doubts = (found.required or Doubt.OPTIONAL, not view.underlaid or Doubt.INCOMPLETE)
+        yield Diagnostic(found.at, name, package.name, {"distro": view.target.distro}, doubts=doubts)

@@ -1,0 +1,88 @@
+"""What packages use and do not declare, as the rules on it ask for it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ...model.misspelling import folded, one_edit
+from ...model.view import Need, View
+from ...model.workspace import Package
+from ..evidence import circular, name_to_declare, present
+from ..fix_actions import Declare
+from .clean_machine import TEST_HEADERS
+
+_COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
+DECLARE = "add `<{tag}>{subject}</{tag}>` to {manifest}"
+"""The help that names what to declare, with the data of describe_need()."""
+
+
+class Undeclared(NamedTuple):
+    """Needs of a package that it does not declare, by the name to declare. missing: nothing that it declares brings
+    them. borrowed: something does."""
+
+    missing: dict[str, list[Need]]
+    borrowed: dict[str, list[Need]]
+
+
+def find_undeclared(view: View, package: Package) -> Undeclared:
+    """The needs of a package that no dependency of its manifest answers."""
+    key = "undeclared needs", package.name
+    if key not in view.worked_out:
+        view.worked_out[key] = _find_undeclared(view, package)
+    return view.worked_out[key]
+
+
+def _find_undeclared(view: View, package: Package) -> Undeclared:
+    closure, declared = view.closure(package), view.declared(package)
+    found = Undeclared({}, {})
+    for need in view.needs(package):
+        if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
+            continue
+        name = name_to_declare(view, need)
+        if name is not None and name != package.name:
+            kind = found.borrowed if view.answered(need.providers, closure) else found.missing
+            kind.setdefault(name, []).append(need)
+    return found
+
+
+def describe_need(package: Package, need: Need) -> dict[str, str]:
+    """The data of a text that says what a package uses, and of DECLARE."""
+    return {
+        "use": _describe_use(need),
+        "tag": _tag(need, package.manifest.format),
+        "manifest": package.digest.manifest_path,
+    }
+
+
+def _describe_use(need: Need) -> str:
+    return {
+        "find_package": f"CMake looks for `{need.subject}`",
+        "part": f"CMake looks for the component `{need.subject}`",
+        "component": f"CMake asks catkin for `{need.subject}`",
+        "program": f"CMake runs `{need.subject}`",
+        "pkg-config": f"pkg-config is asked for `{need.subject}`",
+        "include": f"`{need.subject}` is included",
+        "import": f"`{need.subject}` is imported",
+        "launch": f"`{need.subject}` is "
+        + ("looked up at run time" if need.at.path.endswith(_COMPILED) else "used when launching"),
+        "plugin": f"a plugin of `{need.subject}` is loaded",
+        "shell": f"`{need.subject}` is run by a script",
+    }[need.how]
+
+
+def declare_need(view: View, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
+    """Declares what answers a need; nothing where the manifest has the name with a letter wrong, which another rule
+    repairs."""
+    if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
+        return ()
+    if circular(view, package, name):
+        return ()
+    return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
+
+
+def _tag(need: Need, manifest_format: int) -> str:
+    if need.role == "test":
+        return "test_depend"
+    if need.how in ("import", "launch", "plugin", "shell"):
+        return "exec_depend" if manifest_format > 1 else "run_depend"
+    return "depend" if manifest_format > 1 else "build_depend"

@@ -1,0 +1,99 @@
+"""unexported-include-directory: dependants do not get the folder of installed headers, or of what these include.
+
+What it does
+    Reports packages of ament that install headers and a library and export neither include directories nor a target,
+    where another package of the workspace includes them, and packages of headers alone whose installed headers include
+    a system library off the compiler's path that they do not export.
+
+Why it breaks
+    The package builds, and every package that includes its headers stops: "No such file or directory".
+
+Severity
+    warning.
+
+Example
+    install(DIRECTORY include/ DESTINATION include)
+
+Use instead
+    install(DIRECTORY include/ DESTINATION include)
+    ament_export_include_directories(include)
+
+Not reported
+    Packages that ament_auto exports, or that find the library in a file of CONFIG_EXTRAS.
+"""
+
+from collections.abc import Iterator
+
+from ...model.view import View
+from ...model.workspace import Package
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    group="missing-export",
+    texts={
+        "nothing": Text(
+            "`{package}` installs headers but exports neither include directories nor a target",
+            "call ament_export_targets or ament_export_include_directories",
+        ),
+        "include directory": Text(
+            "an installed header includes `{header}`, but the include directory of `{subject}` is not exported",
+            "export its package, or its include directories",
+        ),
+    },
+)
+def unexported_include_directory(view: View):
+    for package in view:
+        yield from _list_nothing(view, package)
+        ament = read_ament_exports(view, package)
+        if ament is not None:
+            yield from _list_off_path(view, package, ament)
+
+
+def _list_nothing(view: View, package: Package) -> Iterator[Diagnostic]:
+    """Headers and a library that are installed, and nothing that tells dependants where."""
+    first = package.build.ament_package
+    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    if exports_something(exports):
+        return
+    if not package.digest.public_headers or any(f.how == "ament_auto" for f in package.build.found) or first is None:
+        return
+    installed = list_installed_targets(package)
+    if not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
+        return
+    if not any("/include/" in f"/{h}" for h in package.digest.public_headers):
+        return
+    # Plugins of a base class of its own: it is there for others to include.
+    own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
+    if package.name not in view.workspace.includers and not own_base:
+        return
+    subject = "ament_export_include_directories"
+    yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
+
+
+# System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
+# hand: the stored index has headers by the path that dependants write, below whichever folder.
+_OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
+
+
+def _list_off_path(view: View, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+    """Header-only packages that leave the include folder of a system library out."""
+    if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
+        return
+    seen = set()
+    for need in view.weighed(package):
+        name = need.providers[0].name
+        if need.how != "include" or not need.public or not need.certain or name not in _OFF_PATH or name in seen:
+            continue
+        if view.answered(need.providers, ament.found):
+            continue
+        if any("$" in e.item for e in ament.exports if "include" in e.how):
+            continue
+        seen.add(name)
+        data = {"header": need.subject}
+        yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))

@@ -1,0 +1,118 @@
+"""ungiven-package: a target includes headers of a package that is found and not given to it.
+
+What it does
+    Reports packages of ament that CMake finds, whose headers a source of a target includes, and that neither the
+    target is given, itself or through what it links, nor the whole package.
+
+Why it breaks
+    The compiler does not get the include folder of the package. Until Galactic all packages had one folder in common,
+    and some still use it.
+
+Severity
+    error for code that is built in any case; warning in tests, under a condition that is not known, and where it is not
+    known which folder the package uses.
+
+Example
+    find_package(angles REQUIRED)
+    ament_target_dependencies(node rclcpp)      # and node.cpp includes angles/angles.h
+
+Use instead
+    ament_target_dependencies(node rclcpp angles)
+
+Not reported
+    Packages that come with one that the target is given; packages whose headers lie in the folder that packages have in
+    common; targets that are given something that cannot be seen.
+"""
+
+import re
+
+from ...model.cmake.links import may_hide, package_of
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+_INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-find-package",
+    texts=Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
+)
+def ungiven_package(view: View):
+    for package in view:
+        yield from _list_ungiven(view, package)
+
+
+def _list_ungiven(view: View, package):
+    """Packages that are found, whose headers a target includes, and that the target is not given."""
+    if package.build_type != "ament_cmake" or view.offers.has_one_include_folder or package.build.unresolved:
+        return
+    targets = {t.name: t for t in package.build.targets}
+    everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
+    everywhere |= {package_of(link.item) for link in package.build.links}
+    found = {f.name for f in package.build.found}
+    if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
+        return
+    seen = set()
+    reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
+    for include in package.digest.includes:
+        providers = view.header(include.path)
+        if (
+            not include.targets
+            or not view.certain(include.conditions)
+            or len(providers) != 1
+            or providers[0].kind != "ros"
+        ):
+            continue
+        name = providers[0].name
+        if name not in found or name == package.name or name in seen or name.endswith("_vendor"):
+            continue
+        own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, include.path)
+        if own_folder is False:
+            continue
+        for target in include.targets:
+            if target not in reach:
+                items = _find_given(targets, target)
+                hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
+                # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
+                given = {package_of(item) for item in items or () if item not in hiding} | everywhere
+                names = {s for n in given if n for s in (n, n.lower())}
+                reach[target] = None if items is None else (view.spread(names), hiding)
+            brought = reach[target]
+            if brought is None or name in brought[0] or any(may_hide(item, name) for item in brought[1]):
+                continue
+            seen.add(name)
+            certain = view.certain(targets[target].conditions)
+            doubts = (
+                include.role == "build" or Doubt.TEST,
+                certain or Doubt.CONDITIONAL,
+                own_folder or Doubt.INCOMPLETE,
+            )
+            data = {"target": target, "header": include.path}
+            yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
+            break
+
+
+_VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
+
+
+def _find_given(targets, name: str) -> set[str] | None:
+    """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
+    items: set[str] = set()
+    stack, seen = [name], set()
+    while stack:
+        target = targets.get(stack.pop())
+        if target is None or target.name in seen:
+            continue
+        seen.add(target.name)
+        if target.kind in ("unknown", "external", "fetched"):
+            return None
+        if target.alias_of:
+            stack.append(target.alias_of)
+        for link in target.links:
+            items.add(link.item)
+            stack.append(link.item)
+    return items

@@ -1,0 +1,80 @@
+"""uninstalled-plugin-description: an exported description of plugins does not exist or is not installed.
+
+What it does
+    Looks up the plugin descriptions that `<export>` of package.xml names with `${prefix}`: the files exist, and in
+    packages of catkin an install rule takes them.
+
+Why it breaks
+    pluginlib reads the description from the install space. Without it, loading any plugin of the package fails.
+
+Severity
+    error where a library that the description names is installed, so that others expect its plugins; warning otherwise.
+
+Example
+    <nav_core plugin="${prefix}/planner_plugin.xml"/>                   # and install() leaves out planner_plugin.xml
+
+Use instead
+    install(FILES planner_plugin.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+
+Not reported
+    Descriptions that configure_file() makes; packages without CMake.
+"""
+
+import posixpath
+from collections.abc import Iterator
+
+from ...model.cmake.build import At
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .install_rules import has_only_data, is_installed, list_installing
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-install",
+    texts={
+        "no description": Text("the exported plugin description `{subject}` does not exist", "correct the path"),
+        "description": Text(
+            "the exported plugin description `{subject}` is not installed",
+            "install(FILES {file} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
+        ),
+    },
+)
+def uninstalled_plugin_description(view: View):
+    for package, installs in list_installing(view):
+        if not has_only_data(package, installs):
+            yield from _list_descriptions(view, package, installs)
+
+
+def _list_descriptions(view: View, package, installs) -> Iterator[Diagnostic]:
+    """Plugin descriptions that the manifest exports (catkin)."""
+    for export in package.manifest.exports:
+        value = export.attributes.get("plugin", "")
+        if not value.startswith("${prefix}"):
+            continue
+        path = posixpath.normpath(posixpath.join(package.path, value[len("${prefix}/") :]))
+        if path not in package.files:
+            if path + ".in" in package.files or is_installed(package, installs, path):
+                continue
+            at, subject = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
+            yield Diagnostic(at, subject, package.name, kind="no description", doubts=(Doubt.DISTURBS,))
+        elif package.build_type == "catkin" and not is_installed(package, installs, path):
+            at, doubts = At(package.digest.manifest_path, export.line), ()
+            if not _is_shipped(view, package, installs, path):
+                doubts = (Doubt.DISTURBS,)
+            data = {"file": value[len("${prefix}/") :]}
+            yield Diagnostic(at, posixpath.basename(path), package.name, data, "description", doubts)
+
+
+def _is_shipped(view: View, package, installs, description: str) -> bool:
+    """True when a library that the description names is installed, so that the plugins are there for others."""
+    if package.build.unresolved:
+        return False
+    libraries = (posixpath.basename(c.library) for path, c in package.digest.plugins if path == description)
+    names = {name.removeprefix("lib").removesuffix(".so") for name in libraries}
+    return any(
+        item in names and view.certain(i.conditions) for i in installs if i.kind == "targets" for item in i.items
+    )

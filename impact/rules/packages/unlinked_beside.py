@@ -1,0 +1,85 @@
+"""unlinked-beside: a program includes a header of a compiled library and is not linked to it, as another target is.
+
+What it does
+    Compares the programs of a package that include headers of a compiled library, such as yaml-cpp: one that is not
+    linked to it, where another one is.
+
+Why it breaks
+    The linker reports undefined references.
+
+Severity
+    warning.
+
+Example
+    target_link_libraries(writer yaml-cpp)      # and reader.cpp of the program `reader` includes yaml-cpp/yaml.h too
+
+Use instead
+    target_link_libraries(reader yaml-cpp)
+
+Not reported
+    Targets that are given something that cannot be seen; libraries.
+"""
+
+from collections.abc import Iterator
+
+from ...model.cmake.links import linked_items
+from ...model.package import IncludeUse
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .catkin_links import PACKAGE_VARIABLE, plain
+from .unlinked_library import COMPILED
+
+# As COMPILED, of libraries of which some headers can be used alone, so that another target has to show that they are
+# linked.
+_PARTLY_COMPILED = (
+    ("GeographicLib/", "geographiclib"), ("assimp/", "assimp"), ("glog/", "glog"), ("ceres/", "ceres"),
+    ("SDL2/", "sdl2"),
+)  # fmt: skip
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    group="library-component",
+    texts=Text(
+        "`{target}` includes `{header}` but does not link `{subject}`, as `{other}` does",
+        "link to `{target}` what `{other}` links",
+    ),
+)
+def unlinked_beside(view: View):
+    for package in view:
+        yield from _list_unlinked(view, package)
+
+
+def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+    """Programs that include a library's header and are not linked to it, beside a target that is."""
+    targets = {t.name: t for t in package.build.targets}
+    links: dict[str, set[str] | None] = {}
+    seen = set()
+    for root, word in (*COMPILED, *_PARTLY_COMPILED):
+        users: dict[str, IncludeUse] = {}
+        for include in package.digest.includes:
+            if include.path.startswith(root) and view.certain(include.conditions):
+                for name in include.targets:
+                    users.setdefault(name, include)
+        if len(users) < 2:
+            continue
+        for name in users.keys() - links.keys():
+            links[name] = linked_items(package, name) if name in targets else None
+        own = {n for n in users if any(word in plain(item) for item in links[n] or ())}
+        for name, include in users.items():
+            target, items = targets.get(name), links[name]
+            if not own or name in own or target is None or items is None or word in seen:
+                continue
+            if target.kind not in ("executable", "test") or not view.certain(
+                c for c in target.conditions if "TESTING" not in c.text
+            ):
+                continue
+            if any("$" in item and not PACKAGE_VARIABLE.match(item) for item in items):
+                continue
+            seen.add(word)
+            subject = root.partition("/")[0].removesuffix(".h")
+            data = {"target": name, "header": include.path, "other": min(own)}
+            yield Diagnostic(target.at, subject, package.name, data, doubts=(Doubt.INCOMPLETE,))

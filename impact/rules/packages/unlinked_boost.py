@@ -1,0 +1,112 @@
+"""unlinked-boost: a component of Boost is used and not linked, or linked and not asked for.
+
+What it does
+    Reports targets that include a header of Boost whose use needs a compiled component, and that nothing they are given
+    links the component to, and targets that link `Boost::x` where find_package(Boost) is not given the component.
+
+Why it breaks
+    The linker reports undefined references, or CMake stops at a target that is not defined.
+
+Severity
+    For a header of a compiled component: error in an executable, warning in a library and where a dependency may bring
+    the component, note in tests and, in ROS 1, in libraries; error for a component that no exported Boost of ROS 1 has.
+    warning when `Boost::x` is linked and not asked for.
+
+Example
+    find_package(Boost REQUIRED)
+    add_executable(logger src/logger.cpp)       # which includes boost/filesystem.hpp
+
+Use instead
+    find_package(Boost REQUIRED COMPONENTS filesystem)
+    target_link_libraries(logger Boost::filesystem)
+
+Not reported
+    Headers that need no library in the target's version; targets that are given something that cannot be seen.
+"""
+
+from collections.abc import Iterator, Set
+
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.providers.library import BOOST_COMPILED, compiled_component
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .boost_components import BoostComponents, find_linked_components, lacks_boost, list_asked_components
+
+_MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="library-component",
+    texts={
+        "boost": Text(_MESSAGE, "find_package(Boost REQUIRED COMPONENTS {component}) and link it"),
+        "boost, asked for": Text(_MESSAGE, "link `{subject}` to `{target}`"),
+        "not asked for": Text(
+            "`{subject}` is linked, but the component `{component}` is not asked for",
+            "add `{component}` to find_package(Boost COMPONENTS ...)",
+        ),
+    },
+)
+def unlinked_boost(view: View):
+    for package in view:
+        asked = list_asked_components(view, package)
+        if asked is not None:
+            yield from _list_not_asked_for(view, package, asked)
+        yield from _list_unlinked(view, package, asked or frozenset())
+
+
+def _list_not_asked_for(view: View, package, asked: Set[str]) -> Iterator[Diagnostic]:
+    """Imported targets of Boost whose component find_package() is not given."""
+    seen = set(asked)
+    for target in package.build.targets:
+        for link in target.links:
+            head, _, component = link.item.partition("::")
+            if head != "Boost" or component in seen or component not in BOOST_COMPILED:
+                continue
+            if view.active((*target.conditions, *link.conditions)):
+                seen.add(component)
+                subject, doubts = f"Boost::{component}", (Doubt.INCOMPLETE,)
+                yield Diagnostic(link.at, subject, package.name, {"component": component}, "not asked for", doubts)
+
+
+def _list_unlinked(view: View, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
+    """Headers of compiled Boost libraries in targets that nothing given to them links the component to."""
+    boost = view.target.library("boost") or ""
+    targets = {t.name: t for t in package.build.targets}
+    given: dict[str, BoostComponents | None] = {}
+    seen = set()
+    for include in package.digest.includes:
+        component = compiled_component(include.path, boost)
+        if component is None or component in seen or include.role == "aside" or not view.certain(include.conditions):
+            continue
+        for name in include.targets:
+            if name not in targets or not view.certain(targets[name].conditions):
+                continue
+            if name not in given:
+                given[name] = find_linked_components(view, package, targets, name, asked)
+            known = given[name]
+            if known is None or component in known.linked:
+                continue
+            own = include.role == "build" and include.at.path in targets[name].sources
+            lacking = own and lacks_boost(view, package, targets[name], component)
+            if component in known.components and not lacking:
+                continue
+            seen.add(component)
+            asked_for = component in asked
+            data = {"target": name, "header": include.path, "component": component}
+            kind = "boost, asked for" if asked_for else "boost"
+            doubts = () if lacking else _list_doubts(view, include, targets[name], known)
+            at = targets[name].at if asked_for else include.at
+            yield Diagnostic(at, f"Boost::{component}", package.name, data, kind, doubts)
+            break
+
+
+def _list_doubts(view: View, include, target, known: BoostComponents) -> tuple[Doubt, ...]:
+    sure = not known.more and target.kind == "executable"
+    # Who links a catkin library has Boost from roscpp.
+    if include.role != "build" or (view.target.ros == 1 and not sure):
+        return (Doubt.DISPENSABLE,)
+    return () if sure else (Doubt.INCOMPLETE,)

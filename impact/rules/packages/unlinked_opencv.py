@@ -1,0 +1,85 @@
+"""unlinked-opencv: a program calls functions of OpenCV that lie in libraries which nothing it is linked to hands on.
+
+What it does
+    In ROS 1, reports programs that call functions of OpenCV's calib3d, highgui, features2d or video and get OpenCV from
+    cv_bridge alone, which hands on core, imgproc and imgcodecs since Kinetic, or from nobody.
+
+Why it breaks
+    The linker reports undefined references.
+
+Severity
+    error.
+
+Example
+    target_link_libraries(viewer ${catkin_LIBRARIES})       # of cv_bridge, and viewer.cpp calls cv::imshow
+
+Use instead
+    find_package(OpenCV REQUIRED)
+    target_link_libraries(viewer ${catkin_LIBRARIES} ${OpenCV_LIBRARIES})
+
+Not reported
+    Programs that are linked to something of which it cannot be seen what it brings; ROS 2.
+"""
+
+from collections.abc import Iterator
+
+from ...model.cmake.build import for_tests
+from ...model.view import View
+from ...targets.providers.library import OPENCV_FUNCTIONS
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, stem_of
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="library-component",
+    texts=Text(
+        "`{target}` uses `{function}` but does not link `opencv_{library}`",
+        "find_package(OpenCV REQUIRED) and target_link_libraries({target} ${{OpenCV_LIBRARIES}})",
+    ),
+)
+def unlinked_opencv(view: View):
+    if view.target.ros != 1:
+        return
+    for package in view:
+        if package.build_type == "catkin":
+            yield from _list_unlinked(view, package)
+
+
+# Distros whose cv_bridge hands on every library of OpenCV.
+_WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
+
+
+def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+    """Programs that call functions of OpenCV which lie in libraries that nothing they are linked to hands on."""
+    build = package.build
+    if build.unresolved:
+        return
+    calls = [
+        use
+        for use in package.digest.names
+        if use.text in OPENCV_FUNCTIONS and use.role == "build" and view.certain(use.conditions)
+    ]
+    if not calls or any("$" in f.name for f in build.found):
+        return
+    exported = Exported(view)
+    for target in build.targets:
+        if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
+            continue
+        linked = list_linked(package, target.name)
+        if linked is None or any("opencv" in item.lower() for item in linked):
+            continue
+        if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
+            continue
+        call = next((use for use in calls if use.at.path in target.sources), None)
+        brought = exported.closure(linked_packages(view, package, linked)) if call is not None else None
+        if call is None or brought is None:
+            continue
+        bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}
+        if not bringing <= {"cv_bridge"} or (bringing and view.target.distro in _WITH_ALL_OF_OPENCV):
+            continue
+        data = {"target": target.name, "function": call.text, "library": OPENCV_FUNCTIONS[call.text]}
+        yield Diagnostic(call.at, "OpenCV", package.name, data)
+        return

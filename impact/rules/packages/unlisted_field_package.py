@@ -1,0 +1,102 @@
+"""unlisted-field-package: the type of a message's field is unknown to the generator of the message.
+
+What it does
+    Looks up the types of the fields of messages, services and actions that a package generates: those of other packages
+    are given to the generator (DEPENDENCIES), and messages of this name exist.
+
+Why it breaks
+    The generator stops: it finds no definition of the field's type.
+
+Severity
+    error; warning for `Header` in ROS 1, which some generators know by themselves.
+
+Example
+    rosidl_generate_interfaces(${PROJECT_NAME} "msg/Dose.msg")      # which has a field of geometry_msgs/Point
+
+Use instead
+    rosidl_generate_interfaces(${PROJECT_NAME} "msg/Dose.msg" DEPENDENCIES geometry_msgs)
+
+Not reported
+    Packages that come with one that is given; what rosidl adds itself for actions and services; definitions that no
+    generator is given.
+"""
+
+from ...facts.interface import PRIMITIVES
+from ...model.cmake.build import At
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+_ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
+
+
+@rule(
+    scope="target",
+    severity="error",
+    group="missing-interface-wiring",
+    texts={
+        "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),
+        "other type": Text("`{owner}` has no message `{name}`", "correct the type"),
+        "dependency": Text(
+            "`{type}` is a field type, but `{subject}` is not given to the generator",
+            "add `{subject}` to DEPENDENCIES of {generator}",
+        ),
+    },
+)
+def unlisted_field_package(view: View):
+    for package in view:
+        yield from _list_unknown_types(view, package)
+
+
+def _list_unknown_types(view: View, package):
+    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.active(g.conditions)]
+    if not generated:
+        return
+    listed = {file for g in generated for file in g.files}
+    given = {name for g in generated for name, _ in g.dependencies} | _list_implied(view, listed)
+    seen = set()
+    for interface in package.digest.interfaces:
+        if interface.path not in listed:
+            continue
+        for section in interface.definition.sections:
+            for field in section.fields:
+                owner, _, name = field.type.rpartition("/")
+                owner = owner.split("/")[0]
+                if field.type == "Header" and package.build_type == "catkin":
+                    owner = "std_msgs"
+                if not owner and field.type not in _ROS1_PRIMITIVE and "<" not in field.type:
+                    names = {i.name for i in package.digest.interfaces}
+                    if field.type not in names and field.type not in seen:
+                        seen.add(field.type)
+                        yield Diagnostic(_place_of(interface, field), field.type, package.name, kind="own type")
+                    continue
+                if not owner or owner == package.name or owner in seen:
+                    continue
+                names = view.workspace.interface_names.get(owner)
+                if owner in given:
+                    if names and name not in names and (owner, name) not in seen:
+                        seen.add((owner, name))
+                        at, data = _place_of(interface, field), {"owner": owner, "name": name}
+                        yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type")
+                    continue
+                if owner in view.spread(given):
+                    continue
+                seen.add(owner)
+                rosidl = generated[0].how == "rosidl"
+                generator = "rosidl_generate_interfaces" if rosidl else "generate_messages"
+                data = {"type": field.type, "generator": generator}
+                doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
+                yield Diagnostic(_place_of(interface, field), owner, package.name, data, "dependency", doubts)
+
+
+def _list_implied(view: View, files: set[str]) -> set[str]:
+    """Packages that rosidl gives to the generator by itself for actions, and for services where they have events.
+    Source: rosidl_generate_interfaces.cmake."""
+    kinds = {file.rpartition(".")[2] for file in files}
+    names = {"action_msgs", "service_msgs"} if "action" in kinds else {"service_msgs"} if "srv" in kinds else set()
+    return {name for name in names if view.target.ros == 2 and view.available(name)}
+
+
+def _place_of(interface, field) -> At:
+    return At(interface.path, field.line, field.column)
