@@ -450,9 +450,10 @@ def _find_token(text: str, token: str, begins: bool) -> int:
     them, as they do in `vector<int>::iterator`."""
     at = text.find(token)
     while at >= 0:
-        before, after = text[at - 1 : at], text[at + len(token) : at + len(token) + 1]
-        if not _IN_TOKEN.match(before) and not _IN_TOKEN.match(after) and not (begins and before in (">", ")")):
-            break
+        if not _IN_TOKEN.match(text, at + len(token)):
+            before = text[at - 1 : at]
+            if not _IN_TOKEN.match(before) and not (begins and before in (">", ")")):
+                break
         at = text.find(token, at + 1)
     return at
 
