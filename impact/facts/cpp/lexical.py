@@ -106,7 +106,7 @@ _TIE = "\x1f"
 _SPREAD = re.compile(r"::(?:\s|(?<=\s::))")
 _AHEAD = re.compile(r"::\s+(?=\w)")
 _LONGEST_PIECE = 50_000
-_BLANK = re.compile(r"[ \n]")
+_NOT_IN_TOKEN = re.compile(r"[^\w:\x1f]")
 _NO_TOKEN = re.compile(r"[^\w\x00-\x7f]")
 _IN_TOKEN = re.compile(r"[\w:\x1f]")
 _ONLY_TOKENS = bytes(at if at > 127 or chr(at).isalnum() or chr(at) in "_:\x1f" else 32 for at in range(256))
@@ -414,9 +414,9 @@ def _tied(match: re.Match[str]) -> str:
 def _pieces(scanned: Scan, tied: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
     """The segments; long ones in pieces, since each name is looked for from the start."""
     for start, end, conditions in scanned.segments:
-        while end - start > _LONGEST_PIECE and (blank := _BLANK.search(tied, start + _LONGEST_PIECE, end)):
-            yield start, blank.start(), conditions
-            start = blank.start()
+        while end - start > _LONGEST_PIECE and (gap := _NOT_IN_TOKEN.search(tied, start + _LONGEST_PIECE, end)):
+            yield start, gap.start(), conditions
+            start = gap.start()
         yield start, end, conditions
 
 
