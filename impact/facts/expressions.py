@@ -21,6 +21,7 @@ _REPEATS = (codes.MAX_REPEAT, codes.MIN_REPEAT)
 _NO_WIDTH = (codes.AT, codes.ASSERT, codes.ASSERT_NOT)
 _BLANK = [(codes.IN, [(codes.CATEGORY, codes.CATEGORY_SPACE)])]
 _WORD = re.compile(r"\w+")
+_ANY_CASE = re.compile(r"\(\?[a-zA-Z]*i")
 
 
 @lru_cache(maxsize=4096)
@@ -44,7 +45,7 @@ def last_literals(expression: str) -> tuple[str, ...]:
 
 def _parse(expression: str) -> Sequence[Any]:
     """The parts of an expression; none where it does not mind upper and lower case."""
-    return [] if "(?i" in expression else [*parser.parse(expression)]
+    return [] if _ANY_CASE.search(expression) else [*parser.parse(expression)]
 
 
 def _needed(parts: Sequence[_Part], shortest: int) -> Iterator[tuple[str, ...]]:

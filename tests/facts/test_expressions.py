@@ -20,6 +20,7 @@ from rosimpact.impact.facts.expressions import has_needed, last_literals, needed
         (r"(?:depth|)::Image", ("Image",), ("::Image",)),
         (r"shared(?!_from)_ptr", ("shared_ptr",), ("_ptr",)),
         (r"(?i)depth", (), ()),
+        (r"(?s)(?mi:depth) image", (), ()),
         (r"(?:depth)?", (), ()),
         (r"(?:depth)+", ("depth",), ("depth",)),
         ("", (), ()),

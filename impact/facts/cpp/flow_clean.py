@@ -228,12 +228,15 @@ def _ended(match: re.Match[str]) -> str:
 # What the grammar does not know, and what it does that means the same: (words to look for, pattern, stand-in).
 _HAS_INCLUDE = re.compile(r"__has_include(?:_next)?\s*\(\s*(?P<gone>[<\"][^>\"\n]*[>\"])")
 _COMPARED = re.compile(r"^[ \t]*#[ \t]*(?:el)?if\b[^\n]*?\(\s*(?P<gone>[<>=!]=?)(?=\s*,)", re.MULTILINE)
-_NEW_POINTERS = re.compile(r"\bnew\s+[\w:]+\s*(?P<gone>\*+)(?=\s*\[)")
+_NEW_POINTERS = re.compile(r"new(?<!\wnew)\s+[\w:]+\s*(?P<gone>\*+)(?=\s*\[)")
 _DEFAULT_BRACES = re.compile(r"=(?P<blanks>\s*)\{(?P<inner>[^{};]*)\}(?=\s*[,)])")
 _TYPENAME = re.compile(r"(?:=|\breturn)\s*(?P<gone>typename)\b")
 _TEMPLATE = re.compile(r"(?:->|\.)\s*(?P<gone>template)(?=\s+\w+\s*\()")
 _SIGNATURE = re.compile(r"\b(?:SIGNAL|SLOT)\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)")
-_EACH_LIKE = re.compile(r"(?:[Ee]ach|EACH)\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{)")
+_EACH_LIKE, _EACH_MACRO = (
+    re.compile(rf"{word}\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{{)")
+    for word in ("ach(?<=[Ee]ach)", "EACH")
+)
 _STATEMENT_MACRO = re.compile(
     r"^(?P<macro>(?P<blanks>[ \t]*)[A-Z][A-Z0-9_]{3,}\([^()\n]*\))[ \n]"
     r"(?![ \t]*[{;.,=#?:&|+<*)\]-])(?!(?P=blanks)[ \t]+\S)",
@@ -247,7 +250,8 @@ _FURTHER = (
     (("typename",), _TYPENAME, _blank_group),
     (("template",), _TEMPLATE, _blank_group),
     (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
-    (("ach", "EACH"), _EACH_LIKE, _blank_group),
+    (("ach",), _EACH_LIKE, _blank_group),
+    (("EACH",), _EACH_MACRO, _blank_group),
     ((")",), _STATEMENT_MACRO, _ended),
     (("class ", "struct "), _CLASS_MACRO, _blank_macro),
     (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),

@@ -106,7 +106,7 @@ _TIE = "\x1f"
 _SPREAD = re.compile(r"::(?:\s|(?<=\s::))")
 _AHEAD = re.compile(r"::\s+(?=\w)")
 _LONGEST_PIECE = 50_000
-_BLANK = re.compile(r"[ \n]")
+_NOT_IN_TOKEN = re.compile(r"[^\w:\x1f]")
 _NO_TOKEN = re.compile(r"[^\w\x00-\x7f]")
 _IN_TOKEN = re.compile(r"[\w:\x1f]")
 _ONLY_TOKENS = bytes(at if at > 127 or chr(at).isalnum() or chr(at) in "_:\x1f" else 32 for at in range(256))
@@ -414,9 +414,9 @@ def _tied(match: re.Match[str]) -> str:
 def _pieces(scanned: Scan, tied: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
     """The segments; long ones in pieces, since each name is looked for from the start."""
     for start, end, conditions in scanned.segments:
-        while end - start > _LONGEST_PIECE and (blank := _BLANK.search(tied, start + _LONGEST_PIECE, end)):
-            yield start, blank.start(), conditions
-            start = blank.start()
+        while end - start > _LONGEST_PIECE and (gap := _NOT_IN_TOKEN.search(tied, start + _LONGEST_PIECE, end)):
+            yield start, gap.start(), conditions
+            start = gap.start()
         yield start, end, conditions
 
 
@@ -450,9 +450,10 @@ def _find_token(text: str, token: str, begins: bool) -> int:
     them, as they do in `vector<int>::iterator`."""
     at = text.find(token)
     while at >= 0:
-        before, after = text[at - 1 : at], text[at + len(token) : at + len(token) + 1]
-        if not _IN_TOKEN.match(before) and not _IN_TOKEN.match(after) and not (begins and before in (">", ")")):
-            break
+        if not _IN_TOKEN.match(text, at + len(token)):
+            before = text[at - 1 : at]
+            if not _IN_TOKEN.match(before) and not (begins and before in (">", ")")):
+                break
         at = text.find(token, at + 1)
     return at
 

@@ -106,6 +106,25 @@ def test_names_are_kept_once_per_conditions_with_their_first_place():
     ]
 
 
+@pytest.mark.parametrize("between", ["\n", " ", ","])
+def test_names_of_long_files_are_all_found_where_they_first_stand(between):
+    written = [f"ns::v{number % 9_000}" for number in range(20_000)]
+    facts = extract(between.join(["T<int>::first::type", *written, "ns::v1::last"]).encode())
+    assert [name.text for name in facts.qualified] == [*written[:9_000], "ns::v1::last"]
+    assert facts.words == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "variables"),
+    [
+        ("std::mutex m;\n  static const ns::T a = 1;\n::ns::U b{};", ("std::mutex", "ns::T", "ns::U")),
+        ("f(std::mutex m);\nstd::mutex *m;\nreturn ::ns::T m;\n// std::mutex m;", ()),
+    ],
+)
+def test_types_of_variables_that_begin_a_line(text, variables):
+    assert extract(text.encode()).variables == variables
+
+
 def test_columns_count_characters():
     (name,) = extract("/* äöü */ std::a;".encode()).qualified
     assert (name.line, name.column) == (1, 11)
