@@ -7,7 +7,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.analysis import judgement, report_cache
+from rosimpact.impact.analysis import check_opened as check_opened
+from rosimpact.impact.analysis import report_cache
 from rosimpact.impact.analysis.check import run
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.facts.store import Store
@@ -103,19 +104,19 @@ def test_what_is_remembered_is_what_a_fresh_check_says(workspace, tmp_path):
 
 
 @pytest.fixture
-def no_judgement(monkeypatch):
+def only_remembered(monkeypatch):
     """Makes it an error to judge anything."""
 
     def refuse():
-        monkeypatch.setattr(judgement, "check_opened", lambda *_, **__: pytest.fail("judged anew"))
+        monkeypatch.setattr(check_opened, "check_opened", lambda *_, **__: pytest.fail("judged anew"))
 
     return refuse
 
 
-def test_nothing_is_judged_where_nothing_changed(workspace, tmp_path, no_judgement):
+def test_nothing_is_judged_where_nothing_changed(workspace, tmp_path, only_remembered):
     first = check(workspace, tmp_path / "cache")
     assert first[0]
-    no_judgement()
+    only_remembered()
     assert check(workspace, tmp_path / "cache") == first
 
 
@@ -128,17 +129,17 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("other", OTHERS.values(), ids=OTHERS)
-def test_whoever_asks_otherwise_is_not_given_it(workspace, tmp_path, no_judgement, other):
+def test_whoever_asks_otherwise_is_not_given_it(workspace, tmp_path, only_remembered, other):
     check(workspace, tmp_path / "cache")
-    no_judgement()
+    only_remembered()
     with pytest.raises(pytest.fail.Exception, match="judged anew"):
         run(workspace, Options(("jazzy",), cache=tmp_path / "cache", jobs=1)._replace(**other))
 
 
-def test_a_file_of_no_known_kind_that_was_just_written_may_still_change(workspace, tmp_path, no_judgement):
+def test_a_file_of_no_known_kind_that_was_just_written_may_still_change(workspace, tmp_path, only_remembered):
     (workspace / "dogs/notes.odd").write_text("")
     check(workspace, tmp_path / "cache")
-    no_judgement()
+    only_remembered()
     with pytest.raises(pytest.fail.Exception, match="judged anew"):
         check(workspace, tmp_path / "cache")
 
