@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 import rosimpact.impact
 from rosimpact.impact.analysis.check import check, check_workspace
+from rosimpact.impact.analysis.check_opened import is_right_on
 from rosimpact.impact.analysis.findings import SettingsError
-from rosimpact.impact.analysis.judgement import is_right_on
 from rosimpact.impact.analysis.session import CheckError, Options, open_workspace
 from rosimpact.impact.config import ConfigError, load
 from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace

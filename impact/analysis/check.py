@@ -57,7 +57,7 @@ def run(
         key = None if compared else report_cache.report_key(read, options)
         if key is not None and (known := report_cache.load_report(path, read, key, started)) is not None:
             return known
-        from .judgement import check_opened
+        from .check_opened import check_opened
 
         opened = link_workspace(read, path, options)
         checked = check_opened(path, options, opened, base_tree=base_tree, started=started)

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from ..rules.rule import Finding
 from .check import Checked
+from .check_opened import check_opened
 from .findings import rank
-from .judgement import check_opened
 from .session import CheckError, Opened, Options, open_workspace, select_rules
 
 

@@ -17,7 +17,6 @@ from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
-from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, Row
 from ..targets.evidence_record import Evidence
@@ -136,7 +135,7 @@ class View:
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
         self._made: dict[str, tuple[str, ...]] = {}
-        self._interfaces: dict[str, dict[str, Interface]] = {}
+        self._interfaces: dict[str, message_headers.Definitions] = {}
         self._lost: dict[str, Availability | None] = {}
         self._offers_ahead: dict[str, tuple[Offers, PythonOffers]] = {}
         self._environments: dict[str, Environment] = {}
@@ -365,11 +364,11 @@ class View:
             known = self._made[path] = () if inner is None else (path, *inner)
         return known
 
-    def _own_interfaces(self, package: str) -> dict[str, Interface]:
+    def _own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
         known = self._interfaces.get(package)
         if known is None:
-            known = self._interfaces[package] = {}
+            known = self._interfaces[package] = message_headers.Definitions()
             for file in self.workspace.packages[package].digest.interfaces:
                 kind = file.definition.kind
                 known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (

@@ -23,7 +23,6 @@ from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
 if TYPE_CHECKING:
     from ...conditions import Environment
     from ...facts.condition import Condition
-    from ...facts.interface import Interface
     from ..surface.includes import Included
     from ..surface.store import Surfaces
     from ..target import Target
@@ -168,7 +167,7 @@ class Machine:
         self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
         self._known: dict[str, _Found | None] = {}
         self._stored: dict[str, tuple[Included, str, str] | None] = {}
-        self._interfaces: dict[str, dict[str, Interface]] = {}
+        self._interfaces: dict[str, message_headers.Definitions] = {}
         self._holding: dict[tuple[Condition, ...], bool] = {}
         self._versions: dict[str, str | None] = {}
         self._reach = Reach(self._look)
@@ -340,12 +339,12 @@ class Machine:
         others = message_headers.included_by(header, self.ros, self._interfaces_of(package), apart) or ()
         return _Found(owner, version, tuple(dict.fromkeys((*always, *others))))
 
-    def _interfaces_of(self, package: str) -> dict[str, Interface]:
+    def _interfaces_of(self, package: str) -> message_headers.Definitions:
         if package not in self._interfaces:
             stored = self._standing_for(package)
             history = self.surfaces.history(package, self.ros) if stored is not None else None
             found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
-            self._interfaces[package] = found
+            self._interfaces[package] = message_headers.Definitions(found)
         return self._interfaces[package]
 
     def brought(self, header: str) -> Brought:

@@ -6,8 +6,8 @@ Sources: gencpp's templates; rosidl_generator_cpp's, whose parts of a header lie
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from functools import lru_cache
+from collections.abc import Iterator
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from ...facts.interface import PRIMITIVES, TIMES, Interface, full_name
@@ -72,13 +72,26 @@ def package_for_c(header: str) -> str | None:
     return None if found is None else found["package"]
 
 
-def included_by(header: str, ros: int, interfaces: Mapping[str, Interface], apart: bool) -> tuple[str, ...] | None:
+class Definitions(dict[str, Interface]):
+    """The interfaces of a package, by `msg/Name`."""
+
+    @cached_property
+    def by_stem(self) -> dict[tuple[str, str], Interface]:
+        """The same by their kind and the stem of their headers in ROS 2."""
+        found: dict[tuple[str, str], Interface] = {}
+        for name, interface in self.items():
+            kind, _, name = name.partition("/")
+            found.setdefault((kind, snake(name)), interface)
+        return found
+
+
+def included_by(header: str, ros: int, interfaces: Definitions, apart: bool) -> tuple[str, ...] | None:
     """The generated headers that such a header includes; None when its package has no such interface. interfaces: those
-    of its package, by `msg/Name`. apart: the parts of a header lie in a folder of their own."""
+    of its package. apart: the parts of a header lie in a folder of their own."""
     return _of_ros1(header, interfaces) if ros == 1 else _of_ros2(header, interfaces, "detail/" if apart else "")
 
 
-def _of_ros1(header: str, interfaces: Mapping[str, Interface]) -> tuple[str, ...] | None:
+def _of_ros1(header: str, interfaces: Definitions) -> tuple[str, ...] | None:
     found = _ROS1.match(header)
     if found is None:
         return None
@@ -101,12 +114,11 @@ def _stems(name: str) -> Iterator[tuple[str, str]]:
                 yield kind, name.removesuffix(ending)
 
 
-def _of_ros2(header: str, interfaces: Mapping[str, Interface], detail: str) -> tuple[str, ...] | None:
+def _of_ros2(header: str, interfaces: Definitions, detail: str) -> tuple[str, ...] | None:
     found = _ROS2.match(header)
     if found is None:
         return None
-    wanted = found["kind"], found["stem"]
-    definition = next((one for name, one in interfaces.items() if _as_in_headers(name) == wanted), None)
+    definition = interfaces.by_stem.get((found["kind"], found["stem"]))
     if definition is None:
         return None
     own = f"{found['folder']}{detail}{found['stem']}"
@@ -120,11 +132,6 @@ def _of_ros2(header: str, interfaces: Mapping[str, Interface], detail: str) -> t
             for other, type_ in _nested(definition, found["package"])
         )
     )
-
-
-def _as_in_headers(name: str) -> tuple[str, str]:
-    kind, _, name = name.partition("/")
-    return kind, snake(name)
 
 
 def _nested(definition: Interface, package: str) -> Iterator[tuple[str, str]]:

@@ -347,9 +347,13 @@ class Surfaces:
         """The ROS generations of which versions of a package are stored."""
         return self._generations.get(package, ())
 
-    @lru_cache(maxsize=128)  # noqa: B019  (one of them lives as long as the program)
     def history(self, package: str, ros: int) -> History | None:
         """All versions of a package that a ROS generation has, None when there is none."""
+        # Most packages that are asked for are not stored, and must not displace those that are.
+        return self._history(package, ros) if ros in self.generations(package) else None
+
+    @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
+    def _history(self, package: str, ros: int) -> History | None:
         row = self._row("data, includes", package, ros)
         return History(package, *row) if row else None
 

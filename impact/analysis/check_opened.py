@@ -1,4 +1,4 @@
-"""Judges a workspace that is read and linked: runs the rules, merges what they yield, and makes the report."""
+"""Checks a workspace that is read and linked: runs the rules, merges what they yield, and makes the report."""
 
 from __future__ import annotations
 
