@@ -37,6 +37,7 @@ from ..severity import EXPORTED, Doubt, Repeats
 from ..text import Text
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
+from .include_folders import shares_one_folder
 
 _ADD = "add `{subject}` to ament_export_dependencies"
 
@@ -128,7 +129,7 @@ def _list_included(
         seen.add(name)
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
-        apart = overlaid or not view.offers.has_one_include_folder
+        apart = overlaid or not shares_one_folder(view)
         missed = apart and needed and not _comes_with_client_library(view, name)
         bad = repeats.severity("included", Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", severity=bad)
