@@ -37,6 +37,7 @@ from ..severity import EXPORTED, Doubt, Together
 from ..text import Text
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
+from .include_folders import shares_one_folder
 
 _ADD = "add `{subject}` to ament_export_dependencies"
 
@@ -124,7 +125,7 @@ def _list_included(view: View, package: Package, ament: AmentExports, seen: set[
         seen.add(name)
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
-        apart = overlaid or not view.offers.has_one_include_folder
+        apart = overlaid or not shares_one_folder(view)
         missed = apart and needed and not _comes_with_client_library(view, name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
         few = Together("included", EXPORTED)

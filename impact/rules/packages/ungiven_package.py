@@ -9,8 +9,8 @@ Why it breaks
     and some still use it.
 
 Severity
-    error for code that is built in any case; warning in tests, under a condition that is not known, and where it is not
-    known which folder the package uses.
+    error for code that is built in any case; warning in tests, under a condition that is not known, where it is not
+    known which folder the package uses, and where it gets one of its own with a later update.
 
 Example
     find_package(angles REQUIRED)
@@ -31,6 +31,7 @@ from ...model.view import View
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
+from .include_folders import doubts_of_folder, shares_one_folder
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 
@@ -48,7 +49,7 @@ def ungiven_package(view: View):
 
 def _list_ungiven(view: View, package):
     """Packages that are found, whose headers a target includes, and that the target is not given."""
-    if package.build_type != "ament_cmake" or view.offers.has_one_include_folder or package.build.unresolved:
+    if package.build_type != "ament_cmake" or package.build.unresolved or shares_one_folder(view):
         return
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
@@ -70,8 +71,8 @@ def _list_ungiven(view: View, package):
         name = providers[0].name
         if name not in found or name == package.name or name in seen or name.endswith("_vendor"):
             continue
-        own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, include.path)
-        if own_folder is False:
+        of_folder = doubts_of_folder(view, name, include.path)
+        if of_folder is None:
             continue
         for target in include.targets:
             if target not in reach:
@@ -89,7 +90,7 @@ def _list_ungiven(view: View, package):
             doubts = (
                 include.role == "build" or Doubt.TEST,
                 certain or Doubt.CONDITIONAL,
-                own_folder or Doubt.INCOMPLETE,
+                *of_folder,
             )
             data = {"target": target, "header": include.path}
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
