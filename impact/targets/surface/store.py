@@ -60,6 +60,16 @@ class About(NamedTuple):
 _OWN = frozenset({"targets", "libraries", "commands", "programs", "plugins", "launches", "headers"})
 
 
+@cache
+def _list_types() -> dict[str, Any]:
+    """The types of the parts of a BuildSurface that hold several values, by name."""
+    from .surface import BuildSurface
+
+    empty = BuildSurface("")
+    fields = msgspec.structs.fields(BuildSurface)
+    return {field.name: field.type for field in fields if isinstance(getattr(empty, field.name), tuple)}
+
+
 class History:
     """All stored versions of one package of one ROS generation, oldest first. approximate: those that a branch stood
     for."""
@@ -109,10 +119,9 @@ class History:
         build: dict[str, list[Any]] = {}
         for scope, value in self._values("build", version):
             build.setdefault(scope, []).append(value)
-        known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
-        empty = BuildSurface("")
+        listed = _list_types()
         given = {
-            name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
+            name: msgspec.convert(values, listed[name]) if name in listed else values[-1]
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)
