@@ -29,7 +29,7 @@ Not reported
     show.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
@@ -49,7 +49,9 @@ from .brought_back import Headers
 from .diagnosis import UPSTREAM, availability_texts, diagnose
 from .uses import list_cpp_uses
 
-_KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+_CPP_KINDS = ("api-removed", "api-renamed", "api-changed")
+_PYTHON_KINDS = ("python-removed", "python-api")
+_KINDS = (*_CPP_KINDS, *_PYTHON_KINDS)
 # What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
 _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)})
 # Namespaces of libraries whose names are in the table without them.
@@ -84,17 +86,8 @@ class _Rows:
     """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
 
     def __init__(self, view: View):
-        self.cpp: dict[str, list[Change]] = {}
-        self.python: dict[str, list[Change]] = {}
-        self.early: dict[str, list[Change]] = {}
-        for change in view.changes(*_KINDS):
-            if change.package in view.workspace.packages:
-                continue  # what the workspace itself brings is as it brings it, whatever a release did
-            if change.state == "removed" and change.old:
-                rows = self.python if change.kind.startswith("python") else self.cpp
-                rows.setdefault(change.old, []).append(change)
-            elif change.state == "absent" and change.new:
-                self.early.setdefault(change.new, []).append(change)
+        self._by_name = view.target.changes().by_name
+        self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
         self.own = {
             use.text
@@ -106,11 +99,20 @@ class _Rows:
 
     def find(self, use: NameUse) -> list[Change]:
         """The rows on a name that is gone."""
-        rows = self.python if use.language == "python" else self.cpp
-        found = rows.get(use.text, [])
+        kinds = _PYTHON_KINDS if use.language == "python" else _CPP_KINDS
+        found = self._list(kinds, use.text, "removed")
         if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
-            found = rows.get(use.text.rsplit("::", 1)[-1], [])
+            found = self._list(kinds, use.text.rsplit("::", 1)[-1], "removed")
         return found
+
+    def find_early(self, name: str) -> list[Change]:
+        """The rows on a name that is not there yet."""
+        return self._list(_KINDS, name, "absent")
+
+    def _list(self, kinds: Iterable[str], name: str, state: str) -> list[Change]:
+        # What the workspace itself brings is as it brings it, whatever a release did.
+        rows = (row for kind in kinds for row in self._by_name.get((kind, name), ()))
+        return [row for row in rows if row.state == state and row.package not in self._packages]
 
 
 def _list_reviewed(view: View, package: Package, rows: _Rows) -> Iterator[Diagnostic | Upcoming]:
@@ -121,8 +123,9 @@ def _list_reviewed(view: View, package: Package, rows: _Rows) -> Iterator[Diagno
             continue  # the workspace defines it
         change = next((c for c in rows.find(use) if view.concerned(package, c, use.at.path)), None)
         symbol = Symbol("python" if use.language == "python" else "c++", use.text)
-        if change is None and use.text in rows.early and use.text not in rows.own and view.certain(use.conditions):
-            change = next((c for c in rows.early[use.text] if view.concerned(package, c, use.at.path)), None)
+        early = rows.find_early(use.text) if change is None and use.text not in rows.own else []
+        if early and view.certain(use.conditions):
+            change = next((c for c in early if view.concerned(package, c, use.at.path)), None)
             if change is not None and use.role in ("build", "run"):
                 yield diagnose(of_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
             continue
