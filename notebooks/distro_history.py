@@ -11,7 +11,7 @@ import bisect
 import datetime
 import functools
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -377,10 +377,11 @@ class History:
             graph = self.graph_of_half_year(days[start])
             names = [self.packages[column] for column in there]
             weight = np.array([graph.dependents.get(name, 0) for name in names], dtype=float)
-            np.add.at(differing, owner[there], differs)
-            np.add.at(released, owner[there], 1)
-            np.add.at(differing_weighted, owner[there], differs * weight[:, None])
-            np.add.at(released_weighted, owner[there], weight)
+            owners = owner[there]
+            _add_groups(differing, owners, differs)
+            _add_groups(released, owners, np.ones(len(there)))
+            _add_groups(differing_weighted, owners, differs * weight[:, None])
+            _add_groups(released_weighted, owners, weight)
             by_start[row] = differs.mean(axis=0)
             by_start_weighted[row] = weight @ differs / max(weight.sum(), 1)
             known = {name: number for number, name in enumerate(graph.packages)}
@@ -464,6 +465,14 @@ def kind_of_step(old: str, new: str) -> str:
         if one != other:
             return name
     return "patch"
+
+
+def _add_groups(sums: NDArray[np.float64], groups: NDArray[np.int64], rows: NDArray[Any]) -> None:
+    """Adds each row to the sum of its group. What np.add.at() does, many times faster."""
+    order = np.argsort(groups, kind="stable")
+    there, begins = np.unique(groups[order], return_index=True)
+    if len(there):
+        sums[there] += np.add.reduceat(rows[order], begins, axis=0, dtype=np.float64)
 
 
 def _closure(below: list[set[int]]) -> NDArray[np.bool_]:

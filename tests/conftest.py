@@ -116,7 +116,9 @@ def opened(browser, tmp_path):
         browser.get(file.as_uri() + fragment)
         return browser
 
-    return show
+    yield show
+    # A page that is left open goes on working beside the tests that follow.
+    browser.get("about:blank")
 
 
 @pytest.fixture(scope="session")

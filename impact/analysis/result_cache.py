@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 import msgspec
 from msgspec import structs
@@ -63,13 +64,19 @@ def load_tracked_names(store: Store) -> Watched:
     data = store.memo("watched", name)
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
-            known = msgspec.msgpack.decode(data, type=Watched)
-            return structs.replace(known, fields=default_fields(), surfaces=shipped(), uses=looked_for)
+            return _unpack_tracked(data)
     names = watch.watched()
     # The table of fields, the surfaces and the uses are read from files of their own, where they are asked.
     bare = structs.replace(names, fields=None, surfaces=None, uses=None)
     store.remember("watched", encodable([(name, bare)]))
     return names
+
+
+@lru_cache(maxsize=1)
+def _unpack_tracked(data: bytes) -> Watched:
+    """The names as they were stored. What is derived from them is made once in a process. Raises MsgspecError."""
+    known = msgspec.msgpack.decode(data, type=Watched)
+    return structs.replace(known, fields=default_fields(), surfaces=shipped(), uses=looked_for)
 
 
 def results_key(view: View, rules: Iterable[str]) -> bytes:

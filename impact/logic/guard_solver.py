@@ -11,6 +11,8 @@ import contextlib
 import re
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
+from math import ceil
+from typing import Any
 
 from .guard_reading import Language
 from .guard_terms import FORMULAS, NULL, Term, owner_of
@@ -21,6 +23,8 @@ _COUNTS = frozenset(
     ("count", "getNumSubscribers", "get_subscription_count", "get_num_connections", "getNumPublishers", "use_count")
 ) | {"get_intra_process_subscription_count", "get_publisher_count", "get_subscriber_count", "qsize"}
 _RESOURCES_PER_MILLISECOND = 500
+_MARGIN = 8
+"""How far beyond the numbers in conditions a difference between them is looked for before it is given up."""
 
 
 MOST_QUESTIONS = 3_000
@@ -66,6 +70,7 @@ class Solver:
         self.fractional: set[Term] = set()
         self.signed: set[Term] = set()
         self.equated: dict[Term, set[Term]] = {}
+        self.largest = 0
 
     # Questions
 
@@ -98,14 +103,14 @@ class Solver:
 
     def asked(self, **formulas: str) -> Callable[..., bool]:
         """A function that tells whether some of the formulas, by their names, hold together for some values. Besides
-        them there is `supposed`: see supposed()."""
+        them there are `supposed` and `near`: see supposed() and near()."""
         import z3
 
         if _left:
             if _left[-1] <= 0:
                 raise Undecided
             _left[-1] -= 1
-        formulas["supposed"] = _all(self.supposed())
+        formulas["supposed"], formulas["near"] = _all(self.supposed()), _all(self.near())
         known = [f"(assert {fact})" for fact in self.known()]
         named = [f"(declare-const {name} Bool)(assert (=> {name} {formula}))" for name, formula in formulas.items()]
         solver = z3.SimpleSolver()
@@ -119,13 +124,23 @@ class Solver:
         except z3.Z3Exception as error:
             raise Undecided from error
 
-        def ask(*names: str) -> bool:
+        switches = {name: z3.Bool(name) for name in formulas}
+
+        def decide(*names: str) -> Any:
+            # What is not asked is switched off. z3 would choose values for it too: a number that is supposed to be
+            # whole in another question has it look for whole numbers where there are none.
             try:
-                answer = solver.check(*(z3.Bool(name) for name in names))
+                return solver.check(*(each if name in names else z3.Not(each) for name, each in switches.items()))
             except z3.Z3Exception as error:
                 raise Undecided from error
+
+        def ask(*names: str) -> bool:
+            answer = decide(*names)
             if answer == z3.unknown:
-                raise Undecided
+                answer = decide(*names, "near")
+                # A difference that is only supposed is none where nothing near shows it.
+                if answer == z3.unknown or (answer == z3.unsat and "supposed" not in names):
+                    raise Undecided
             return answer == z3.sat
 
         return ask
@@ -171,6 +186,7 @@ class Solver:
         self.look(right, True)
         bases = {base for part in term.parts for base in self.bases(part)}
         literals = [literal for part in term.parts for literal in self.literals(part)]
+        self.largest = max(self.largest, *(ceil(abs(Fraction(literal.text))) for literal in literals), 0)
         calculated = self.is_arithmetic(left) or self.is_arithmetic(right)
         if term.text != "==" and (literals or calculated):
             self.ordered |= bases
@@ -374,14 +390,25 @@ class Solver:
         for term, value in self.numbers.items():
             if term.kind == "name" and _CONSTANT.fullmatch(term.text):
                 constants.append(value)
-            # Whether numbers are whole does not matter where they are only said to be equal or not.
-            if term in self.measured and term not in self.fractional:
+            if self.is_counting(term):
                 result.append(f"(is_int {value})")
                 if term not in self.signed and not self.is_whole(term):
                     result.append(f"(>= {value} 0.0)")
         if len(constants) > 1:
             result.append(f"(distinct {' '.join(constants)})")
         return result
+
+    def near(self) -> list[str]:
+        """That whole numbers lie close to the numbers in the conditions. Without it z3 may go through ever larger ones
+        and come to no end."""
+        bound = self.largest + _MARGIN
+        whole = (value for term, value in self.numbers.items() if self.is_counting(term))
+        return [f"(<= (- {bound}.0) {value} {bound}.0)" for value in whole]
+
+    def is_counting(self, term: Term) -> bool:
+        """Whether a term is supposed to be a whole number. That does not matter for those that are only said to be
+        equal or not."""
+        return term in self.measured and term not in self.fractional
 
 
 def _all(formulas: list[str]) -> str:

@@ -86,7 +86,8 @@ def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version."""
 
-    here = target.changes().removed
+    here, there = target.changes().removed, ahead.target.changes().removed
+    new = there.keys() - here.keys()
 
     @cache
     def moves(package: str, library: bool) -> bool:
@@ -96,10 +97,9 @@ def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
 
     return tuple(
         change
-        for change in ahead.target.changes()
-        if change.state == "removed"
-        and (change.kind, change.package, change.old) not in here
-        and moves(change.package, change.library)
+        for key in filter(new.__contains__, there)
+        for change in there[key]
+        if moves(change.package, change.library)
     )
 
 

@@ -111,7 +111,8 @@ def unpack(data: Path = DATA) -> bytes:
 
 def data_stamp() -> tuple[tuple[str, int, int], ...]:
     """Sizes and times of the shipped data files; differs whenever one of them does."""
-    files = ((path.name, path.stat()) for path in sorted(DATA.iterdir()) if path.is_file())
+    with os.scandir(DATA) as entries:
+        files = sorted((entry.name, entry.stat()) for entry in entries if entry.is_file())
     return tuple((name, status.st_size, status.st_mtime_ns) for name, status in files)
 
 

@@ -82,9 +82,13 @@ class ChangeTable(tuple[Change, ...]):
         return found
 
     @cached_property
-    def removed(self) -> frozenset[tuple[str, str, str]]:
-        """Kind, package and old name of what is removed."""
-        return frozenset((c.kind, c.package, c.old) for c in self if c.state == "removed")
+    def removed(self) -> dict[tuple[str, str, str], list[Change]]:
+        """What is removed, by kind, package and old name."""
+        found: dict[tuple[str, str, str], list[Change]] = {}
+        for change in self:
+            if change.state == "removed":
+                found.setdefault((change.kind, change.package, change.old), []).append(change)
+        return found
 
 
 class Target(Protocol):

@@ -27,6 +27,15 @@ def python(*written: str) -> tuple[GuardAt, ...]:
 
 OPPOSITE = {"tightened": "widened", "widened": "tightened"}
 
+# Among ever larger whole numbers z3 comes to no end with these.
+WITHOUT_END = [
+    (["if: (x - y < 0) && !(b && x - y != -1) && y < 0"], ["if: x - y < 0"], "widened"),
+    (["if: x - y < 0"], ["if: (x - y < 0) && !(b && x - y != -1) && (b || c)"], "tightened"),
+    (["if: x + y > -1 || a"], ["if: (x + y > -1 || a) && x + y < 0"], "tightened"),
+    (["if: x + y < 0"], ["if: x + y < 0", "if: a || x + y > -1"], "tightened"),
+    (["if: !(x - y <= 0 || x > 0)"], ["if: !(x - y <= 0 || x > 0)", "if: x - y >= 1 || 2 * x >= -1"], "changed"),
+]
+
 CPP = [
     # Nested, negated, reordered.
     (["if: a && b"], ["if: a", "if: b"], "equivalent"),
@@ -146,7 +155,7 @@ PYTHON = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "kind"), CPP, ids=str)
+@pytest.mark.parametrize(("old", "new", "kind"), [*CPP, *WITHOUT_END], ids=str)
 def test_cpp(old, new, kind):
     assert compare(cpp(*old), cpp(*new)) == kind
     assert compare(cpp(*new), cpp(*old)) == OPPOSITE.get(kind, kind)

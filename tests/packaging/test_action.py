@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 import yaml
@@ -24,11 +25,21 @@ def script(step_id: str) -> str:
     return step["run"]
 
 
-def run_check_step(folder: Path, **inputs: str) -> tuple[int, dict[str, str], str]:
-    """Runs the step as a runner does. Returns its exit status, its outputs and what it printed."""
+class Ran(NamedTuple):
+    """The step of the check after its run. folder: where it left its files."""
+
+    folder: Path
+    status: int
+    outputs: dict[str, str]
+    printed: str
+
+
+def run_check_step(folder: Path, cache: Path, **inputs: str) -> Ran:
+    """Runs the step as a runner does."""
     environment = {
         "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}",
         "HOME": str(folder),
+        "ROSIMPACT_CACHE": str(cache),
         "RUNNER_TEMP": str(folder),
         "GITHUB_OUTPUT": str(folder / "output"),
         "GITHUB_STEP_SUMMARY": str(folder / "summary"),
@@ -41,31 +52,40 @@ def run_check_step(folder: Path, **inputs: str) -> tuple[int, dict[str, str], st
     command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", "-c", script("check")]
     result = subprocess.run(command, env=environment, capture_output=True, text=True)
     lines = (folder / "output").read_text().splitlines()
-    return result.returncode, dict(line.split("=", 1) for line in lines), result.stdout
+    return Ran(folder, result.returncode, dict(line.split("=", 1) for line in lines), result.stdout)
+
+
+@pytest.fixture(scope="module")
+def step(tmp_path_factory, cache) -> Ran:
+    """The step without any inputs."""
+    return run_check_step(tmp_path_factory.mktemp("step"), cache)
 
 
 @pytest.mark.parametrize(
     ("inputs", "status"),
     [
-        ({}, 1),
         ({"fail_on": "never"}, 0),
         ({"targets": "humble@2024-03-01 jazzy", "arguments": "--select removed-header"}, 1),
         ({"targets": "no-such-distro"}, 2),
     ],
 )
-def test_the_check_step(tmp_path, inputs, status):
-    returned, outputs, _ = run_check_step(tmp_path, **inputs)
-    assert returned == status
-    assert outputs["status"] == str(status)
+def test_the_check_step(tmp_path, cache, inputs, status):
+    ran = run_check_step(tmp_path, cache, **inputs)
+    assert ran.status == status
+    assert ran.outputs["status"] == str(status)
 
 
-def test_what_the_check_step_leaves(tmp_path):
-    _, outputs, printed = run_check_step(tmp_path)
-    assert json.loads(Path(outputs["sarif-file"]).read_text())["version"] == "2.1.0"
-    assert Path(outputs["html-file"]).read_text().lstrip().lower().startswith("<!doctype html>")
-    assert len((tmp_path / "rosimpact.markdown").read_text().splitlines()) <= 10
-    assert (tmp_path / "summary").read_text().count("- ❌ `src/porter_vision/CMakeLists.txt:16`") == 1
-    assert re.search(r"^::error ", printed, re.MULTILINE)
+def test_the_check_step_without_inputs(step):
+    assert step.status == 1
+    assert step.outputs["status"] == "1"
+
+
+def test_what_the_check_step_leaves(step):
+    assert json.loads(Path(step.outputs["sarif-file"]).read_text())["version"] == "2.1.0"
+    assert Path(step.outputs["html-file"]).read_text().lstrip().lower().startswith("<!doctype html>")
+    assert len((step.folder / "rosimpact.markdown").read_text().splitlines()) <= 10
+    assert (step.folder / "summary").read_text().count("- ❌ `src/porter_vision/CMakeLists.txt:16`") == 1
+    assert re.search(r"^::error ", step.printed, re.MULTILINE)
 
 
 def test_no_input_is_pasted_into_a_script():
@@ -102,10 +122,9 @@ def test_inputs_are_no_patterns_of_file_names():
     assert "set +e -fuo pipefail" in script("check")
 
 
-def test_sarif_is_uploaded_by_what_the_check_says(tmp_path):
+def test_sarif_is_uploaded_by_what_the_check_says(step):
     """hashFiles() knows no files outside of the checkout, such as those in RUNNER_TEMP."""
-    _, outputs, _ = run_check_step(tmp_path)
-    assert outputs["has-sarif"] == "true"
+    assert step.outputs["has-sarif"] == "true"
     assert "hashFiles" not in (ROOT / "action.yml").read_text(encoding="utf-8")
 
 

@@ -1,5 +1,6 @@
 """What is shipped: the content of wheel and sdist, and that the wheel runs where the user's own packages come first."""
 
+import importlib.metadata
 import json
 import os
 import shutil
@@ -56,9 +57,11 @@ def sdist_names(source, tmp_path_factory):
 def installed(wheel, tmp_path_factory):
     """A virtual environment that holds the wheel; its dependencies come from the environment of the tests."""
     folder = tmp_path_factory.mktemp("venv")
-    venv.create(folder, with_pip=True, symlinks=True)
-    command = [folder / "bin/python", "-m", "pip", "install", "--no-deps", "--no-index", wheel]
-    subprocess.run(command, check=True, capture_output=True)
+    # Since 22.3 pip installs into other environments. To make one with a pip of its own takes longer than all the rest.
+    shared = pip_version() >= (22, 3)
+    venv.create(folder, with_pip=not shared, symlinks=True)
+    pip = [sys.executable, "-m", "pip", "--python", folder / "bin/python"] if shared else [folder / "bin/pip"]
+    subprocess.run([*pip, "install", "--no-deps", "--no-index", wheel], check=True, capture_output=True)
     (site,) = folder.glob("lib/python*/site-packages")
     # Folders named in a .pth file come behind the venv's own, so the wheel goes before the rosimpact under test; .pth
     # files inside them, such as that of an editable installation, are not read.
@@ -73,6 +76,14 @@ def shadowing(tmp_path):
         (tmp_path / room).mkdir()
         (tmp_path / room / "__init__.py").write_text(f'raise ImportError("the user\'s own package {room}")\n')
     return tmp_path
+
+
+def pip_version() -> tuple[int, ...]:
+    """The version of the pip of the tests' environment, empty when there is none."""
+    try:
+        return tuple(int(part) for part in importlib.metadata.version("pip").split(".") if part.isdigit())
+    except importlib.metadata.PackageNotFoundError:
+        return ()
 
 
 def built(source: Path, function: str, folder: Path) -> Path:

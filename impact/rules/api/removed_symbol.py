@@ -84,8 +84,9 @@ def _list_reviewed(view: View, package: Package, rows: ReviewedNames) -> Iterato
             continue  # the workspace defines it
         change = next((c for c in rows.find(use) if view.concerned(package, c, use.at.path)), None)
         symbol = Symbol("python" if use.language == "python" else "c++", use.text)
-        if change is None and use.text in rows.early and use.text not in rows.own and view.certain(use.conditions):
-            change = next((c for c in rows.early[use.text] if view.concerned(package, c, use.at.path)), None)
+        early = rows.find_early(use.text) if change is None and use.text not in rows.own else []
+        if early and view.certain(use.conditions):
+            change = next((c for c in early if view.concerned(package, c, use.at.path)), None)
             if change is not None and use.role in ("build", "run"):
                 yield diagnose(of_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
             continue

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...targets.symbol import Symbol
 from ...targets.target import Change
 
-KINDS_OF_NAMES = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+_CPP_KINDS = ("api-removed", "api-renamed", "api-changed")
+_PYTHON_KINDS = ("python-removed", "python-api")
+KINDS_OF_NAMES = (*_CPP_KINDS, *_PYTHON_KINDS)
 """The kinds of such rows."""
 # Namespaces of libraries whose names are in the table without them.
 _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
@@ -17,17 +21,8 @@ class ReviewedNames:
     """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
 
     def __init__(self, view: View):
-        self.cpp: dict[str, list[Change]] = {}
-        self.python: dict[str, list[Change]] = {}
-        self.early: dict[str, list[Change]] = {}
-        for change in view.changes(*KINDS_OF_NAMES):
-            if change.package in view.workspace.packages:
-                continue  # what the workspace itself brings is as it brings it, whatever a release did
-            if change.state == "removed" and change.old:
-                rows = self.python if change.kind.startswith("python") else self.cpp
-                rows.setdefault(change.old, []).append(change)
-            elif change.state == "absent" and change.new:
-                self.early.setdefault(change.new, []).append(change)
+        self._by_name = view.target.changes().by_name
+        self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
         self.own = {
             use.text
@@ -39,11 +34,20 @@ class ReviewedNames:
 
     def find(self, use: NameUse) -> list[Change]:
         """The rows on a name that is gone."""
-        rows = self.python if use.language == "python" else self.cpp
-        found = rows.get(use.text, [])
+        kinds = _PYTHON_KINDS if use.language == "python" else _CPP_KINDS
+        found = self._list(kinds, use.text, "removed")
         if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
-            found = rows.get(use.text.rsplit("::", 1)[-1], [])
+            found = self._list(kinds, use.text.rsplit("::", 1)[-1], "removed")
         return found
+
+    def find_early(self, name: str) -> list[Change]:
+        """The rows on a name that is not there yet."""
+        return self._list(KINDS_OF_NAMES, name, "absent")
+
+    def _list(self, kinds: Iterable[str], name: str, state: str) -> list[Change]:
+        # What the workspace itself brings is as it brings it, whatever a release did.
+        rows = (row for kind in kinds for row in self._by_name.get((kind, name), ()))
+        return [row for row in rows if row.state == state and row.package not in self._packages]
 
 
 def is_contradicted(view: View, symbol: Symbol, change: Change) -> bool:

@@ -63,6 +63,26 @@ _tables: dict[str, ChangeTable] = {}
 """What DistroTarget.changes() worked out last in this process, by the identity of the target."""
 
 
+@functools.lru_cache(maxsize=16)
+def _read_released(data: Snapshot, distro: int, cut: int) -> Mapping[str, _Released]:
+    """The packages that a distro has at a time, by name. Targets of one process that ask for the same share it. Raises
+    SnapshotError."""
+    found: dict[str, _Released] = {}
+    for repository, ts, version, names in data.rows(
+        "SELECT r.repository, max(r.ts), r.version, p.names FROM release r"
+        " LEFT JOIN packages p ON p.id = r.packages WHERE r.distro = ? AND r.ts <= ? GROUP BY r.repository",
+        (distro, cut),
+    ):
+        if version is None:
+            continue
+        for name in names.split(" "):
+            old = found.get(name)
+            # Two repositories may name one package for a while; the later release is the one in force.
+            if old is None or old.ts < ts:
+                found[name] = _Released(version, repository, ts)
+    return found
+
+
 class DistroTarget(Target):
     """A distro at a date, with overrides.
 
@@ -108,7 +128,7 @@ class DistroTarget(Target):
         self.notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
         self._library_cells: dict[str, Library] | None = None
-        self._released: dict[str, _Released] | None = None
+        self._released: Mapping[str, _Released] | None = None
         self._versions: dict[str, str | None] = {}
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
@@ -200,22 +220,9 @@ class DistroTarget(Target):
 
     # Released packages
 
-    def _packages(self) -> dict[str, _Released]:
+    def _packages(self) -> Mapping[str, _Released]:
         if self._released is None:
-            found: dict[str, _Released] = {}
-            for repository, ts, version, names in self._data.rows(
-                "SELECT r.repository, max(r.ts), r.version, p.names FROM release r"
-                " LEFT JOIN packages p ON p.id = r.packages WHERE r.distro = ? AND r.ts <= ? GROUP BY r.repository",
-                (self._id, self._cut),
-            ):
-                if version is None:
-                    continue
-                for name in names.split(" "):
-                    old = found.get(name)
-                    # Two repositories may name one package for a while; the later release is the one in force.
-                    if old is None or old.ts < ts:
-                        found[name] = _Released(version, repository, ts)
-            self._released = found
+            self._released = _read_released(self._data, self._id, self._cut)
         return self._released
 
     def version(self, package: str) -> str | None:
