@@ -52,6 +52,8 @@ from .uses import list_cpp_uses
 
 # What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
 _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)})
+
+
 @rule(
     scope="target",
     severity="error",
