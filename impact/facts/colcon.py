@@ -55,7 +55,9 @@ def _settings(text: str) -> ColconFile:
         found = msgspec.msgpack.decode(msgspec.msgpack.encode(found))
     except (DocumentError, OverflowError, TypeError, UnicodeEncodeError) as error:
         return ColconFile(problems=(Problem(1, f"is no YAML ({error})"),))
-    return ColconFile(settings=found if isinstance(found, dict) else {})
+    # A name that is no text, as in `1: 2`, is no setting.
+    pairs = found.items() if isinstance(found, dict) else ()
+    return ColconFile(settings={name: value for name, value in pairs if isinstance(name, str)})
 
 
 def _name_in_setup(text: str) -> str:

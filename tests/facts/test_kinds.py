@@ -2,7 +2,7 @@
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from rosimpact.edges.limits import size_text
 from rosimpact.impact.facts.kinds import (
@@ -101,6 +101,8 @@ def test_what_is_too_large_is_named_and_not_read(kind):
 
 @pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - SEARCHES))
 @given(data=st.binary(max_size=300))
+@example(data=b"?")  # a YAML mapping whose only key is null
+@example(data=b"1: 2\nname: 3\n")
 def test_any_bytes_give_facts_that_survive_the_store(kind, data):
     facts = extract(kind, data)
     assert isinstance(facts, FileFacts)
