@@ -124,13 +124,9 @@ class Solver:
         except z3.Z3Exception as error:
             raise Undecided from error
 
-        switches = {name: z3.Bool(name) for name in formulas}
-
         def decide(*names: str) -> Any:
-            # What is not asked is switched off. z3 would choose values for it too: a number that is supposed to be
-            # whole in another question has it look for whole numbers where there are none.
             try:
-                return solver.check(*(each if name in names else z3.Not(each) for name, each in switches.items()))
+                return solver.check(*map(z3.Bool, names))
             except z3.Z3Exception as error:
                 raise Undecided from error
 

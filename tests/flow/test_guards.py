@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+import z3
 from rosimpact.impact.logic.guard_solver import limited_questions
 from rosimpact.impact.logic.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
 from rosimpact.impact.model.flow.graph import GuardAt
@@ -205,6 +206,35 @@ def test_too_much_work_is_changed():
         compare(cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, Reading(milliseconds=5))
         == "changed"
     )
+
+
+@pytest.fixture
+def stubborn(monkeypatch):
+    """z3 comes to no end but with whole numbers that are near."""
+    check = z3.Solver.check
+    monkeypatch.setattr(
+        z3.Solver, "check", lambda self, *asked: check(self, *asked) if z3.Bool("near") in asked else z3.unknown
+    )
+
+
+@pytest.mark.usefixtures("stubborn")
+def test_what_only_lies_far_away_is_not_taken_to_be_impossible():
+    assert impossible(cpp("if: x > 3 && y > 3 * x")) is False
+    assert impossible(cpp("if: x > 3 && y > 30 * x")) is False
+    assert compare(cpp("if: x < 3"), cpp("if: x < 4")) == "changed"
+
+
+def test_supposed_differences_are_looked_for_nearby(monkeypatch):
+    check = z3.Solver.check
+
+    def stubborn(self, *asked):
+        is_endless = z3.Bool("supposed") in asked and z3.Bool("near") not in asked
+        return z3.unknown if is_endless else check(self, *asked)
+
+    monkeypatch.setattr(z3.Solver, "check", stubborn)
+    assert compare(cpp("if: x < 3"), cpp("if: x < 4")) == "widened"
+    assert compare(cpp("if: x < 3"), cpp("if: x < 3", "if: x < 5")) == "equivalent"
+    assert compare(cpp("if: x < 3000"), cpp("if: x < 4000")) == "widened"
 
 
 def test_what_says_the_same_needs_no_solver():

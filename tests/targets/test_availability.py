@@ -89,5 +89,9 @@ def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
     target = DistroTarget("rolling", "2023-04-05")
     assert "SHARED_PTR_DEFINITIONS" not in {change.old for change in target.changes()}
     (soon,) = (ahead for ahead in horizons(target) if ahead.soon)
-    assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming_changes(target, soon)}
+    coming = coming_changes(target, soon)
+    assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming}
+    # What is gone already does not go again.
+    assert not {(change.kind, change.package, change.old) for change in coming} & target.changes().removed.keys()
+    assert target.changes().removed
     assert soon.target.identity() != target.identity()

@@ -93,8 +93,8 @@ def _list_reviewed(view: View, package: Package, rows: ReviewedNames) -> Iterato
                 yield diagnose(of_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
             continue
         ahead = None
-        if change is None:
-            change, ahead = view.coming.get(use.text, (None, None))
+        if change is None and use.text in view.coming:
+            change, ahead = view.coming[use.text]
         if (
             change is None
             or change.kind not in KINDS_OF_NAMES
