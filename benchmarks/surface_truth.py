@@ -277,7 +277,7 @@ def _message(change, old: Text, new: Text) -> str:
 def precision(folder: Path, count: int, listed: int) -> int:
     from rosimpact.databuild.surface.clones import Clones
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.surface.compare import State, compare
+    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
     from rosimpact.impact.targets.version import parts
 
     clones = Clones(folder)
@@ -295,7 +295,7 @@ def precision(folder: Path, count: int, listed: int) -> int:
             if len(tagged) < 2 or used >= count:
                 continue
             (_, names, first), (_, others, last) = tagged[len(tagged) // 3], tagged[-1]
-            before, after = (State(clone.surfaces(tag, store)) for tag in (first, last))
+            before, after = (RepositorySurfaces(clone.surfaces(tag, store)) for tag in (first, last))
             old_folders, new_folders = folders(clone.place, first), folders(clone.place, last)
             done = 0
             for package in sorted(names & others & before.surfaces.keys() & after.surfaces.keys()):
@@ -337,21 +337,21 @@ def recall(folder: Path, table: Path, listed: int) -> int:
     import yaml
     from rosimpact.databuild.surface.clones import Clone, VersionError
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.surface.compare import State, compare_states
+    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare_states
     from rosimpact.impact.tree import TreeError
 
     entries = [e for e in yaml.safe_load(table.read_text()) if str(e["verified"]).startswith("git")]
     answers: Counter[tuple[str, str]] = Counter()
     rows: list[str] = []
-    states: dict[tuple[str, str], State | None] = {}
+    states: dict[tuple[str, str], RepositorySurfaces | None] = {}
     known: dict[tuple[str, str, str], dict] = {}
     with Store() as store:
 
-        def state(clone: Clone, revision: str) -> State | None:
+        def state(clone: Clone, revision: str) -> RepositorySurfaces | None:
             key = (clone.name, revision)
             if key not in states:
                 try:
-                    states[key] = State(clone.surfaces(revision, store))
+                    states[key] = RepositorySurfaces(clone.surfaces(revision, store))
                 except TreeError:
                     states[key] = None
             return states[key]

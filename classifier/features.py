@@ -22,7 +22,7 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.feature_extraction.text import TfidfTransformer
 from sklearn.preprocessing import StandardScaler
 
-from .reading import VIEWS, Reading
+from .reading import VIEWS, ReportReading
 from .signs import LIMIT, SIGNS
 
 MANY = 400
@@ -51,7 +51,7 @@ class Counts(NamedTuple):
         return Counts(grams, self.names, self.signs[rows], self.groups[rows])
 
 
-def count(readings: Iterable[Reading], groups: Sequence[str]) -> Counts:
+def count(readings: Iterable[ReportReading], groups: Sequence[str]) -> Counts:
     """Counts the n-grams that can be learnt from these reports: those that stand in enough of them.
 
     readings: in the order of groups, the repository of each; read once, one at a time. Most n-grams stand in one

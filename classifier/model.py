@@ -18,7 +18,7 @@ import numpy as np
 from ..edges.console import UserError
 from ..edges.files import read_file, writing
 from ..edges.limits import limits, size_text
-from .reading import VIEWS, Reading
+from .reading import VIEWS, ReportReading
 from .signs import DIGEST, LIMIT, SIGNS
 
 FORMAT = 2
@@ -29,7 +29,7 @@ class ClassifierError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 
-class Known(NamedTuple):
+class KnownReport(NamedTuple):
     """A known report. likeness: cosine, 1 for the same words."""
 
     id: str
@@ -47,7 +47,7 @@ class Reason(NamedTuple):
     weight: float
 
 
-class Verdict(NamedTuple):
+class ModelVerdict(NamedTuple):
     """What the model says. label: the likeliest, also where it abstains. probabilities: by label, their sum is 1."""
 
     label: str
@@ -102,22 +102,22 @@ class Model:
         except (KeyError, ValueError, TypeError, IndexError, RecursionError):
             raise ClassifierError(f"{name}: is incomplete; {cure}") from None
 
-    def scores(self, reading: Reading) -> np.ndarray:
+    def scores(self, reading: ReportReading) -> np.ndarray:
         """The score of each label, before calibration."""
         columns, values = self._words(reading)
         signs = self._signs(reading)
         words = len(self._names)
         return values @ self._coefficients[columns] + signs @ self._coefficients[words:] + self.arrays["intercept"]
 
-    def verdict(self, reading: Reading) -> Verdict:
+    def verdict(self, reading: ReportReading) -> ModelVerdict:
         """Label, calibrated probabilities, and whether it abstains: unsure of the label, or no word known."""
         chances = softmax(self.scores(reading) / self.temperature)
         best = int(chances.argmax())
         probabilities = {label: float(chance) for label, chance in zip(self.labels, chances, strict=True)}
         abstains = not self._knows(reading) or bool(chances[best] < self.threshold)
-        return Verdict(self.labels[best], probabilities, abstains)
+        return ModelVerdict(self.labels[best], probabilities, abstains)
 
-    def reasons(self, reading: Reading, label: str, most: int = 8) -> list[Reason]:
+    def reasons(self, reading: ReportReading, label: str, most: int = 8) -> list[Reason]:
         """The words and signs that spoke most for a label, strongest first."""
         place = self.labels.index(label)
         others = [other for other in range(len(self.labels)) if other != place]
@@ -136,7 +136,7 @@ class Model:
         best = sorted(((weight, *key) for key, weight in found.items() if weight > 0), reverse=True)[:most]
         return [Reason(where, what, weight) for weight, where, what in best]
 
-    def nearest(self, reading: Reading, most: int = 5) -> list[Known]:
+    def nearest(self, reading: ReportReading, most: int = 5) -> list[KnownReport]:
         """The known reports whose words are most like those of a report; none when it shares no word with them."""
         columns, values = self._words(reading)
         vector = values @ self.arrays["projection"][columns].astype(np.float32)
@@ -145,14 +145,14 @@ class Model:
             return []
         likeness = self.arrays["vectors"].astype(np.float32) @ (vector / length)
         order = np.argsort(-likeness, kind="stable")[:most]
-        return [Known(*self.seen[place], likeness=float(likeness[place])) for place in order]
+        return [KnownReport(*self.seen[place], likeness=float(likeness[place])) for place in order]
 
-    def _knows(self, reading: Reading) -> bool:
+    def _knows(self, reading: ReportReading) -> bool:
         """Whether the model knows any word of a report; letters it always does."""
         words = ((reading.grams[view], known) for view, known in self._columns.items() if VIEWS[view].shown)
         return any(gram in known for grams, known in words for gram in grams)
 
-    def _words(self, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
+    def _words(self, reading: ReportReading) -> tuple[np.ndarray, np.ndarray]:
         columns: list[int] = []
         parts: list[np.ndarray] = []
         for view, known in self._columns.items():
@@ -165,7 +165,7 @@ class Model:
             parts.append(VIEWS[view].weight * strength / np.linalg.norm(strength))
         return np.array(columns, np.int64), np.concatenate(parts) if parts else np.zeros(0)
 
-    def _signs(self, reading: Reading) -> np.ndarray:
+    def _signs(self, reading: ReportReading) -> np.ndarray:
         scaled = (np.array(reading.signs) - self.arrays["sign means"]) / self.arrays["sign scales"]
         return np.clip(scaled, -LIMIT, LIMIT) / np.sqrt(len(SIGNS))
 

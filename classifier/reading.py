@@ -13,7 +13,7 @@ TITLE, BEGINNING = 250, 1_500
 """Characters of title and body that are read letter by letter."""
 
 
-class View(NamedTuple):
+class ReportView(NamedTuple):
     """One way to read a report: which text, as which words, in runs of how many at most, with which weight.
 
     shown: how it is called where a word is shown to a person; empty for what would tell a person nothing. rare: how
@@ -30,25 +30,25 @@ class View(NamedTuple):
 
 
 VIEWS = {
-    "title": View(plain_words, "title", 2, 0.7, "title"),
-    "prose": View(plain_words, "text", 2, 1.0, "text"),
-    "errors": View(plain_words, "errors", 2, 0.6, "log"),
-    "title-general": View(general_words, "title", 3, 0.7, "title"),
-    "prose-general": View(general_words, "text", 3, 1.0, "text"),
-    "errors-general": View(general_words, "errors", 2, 0.6, "log"),
-    "letters": View(letters, "whole", 1, 1.0, "", rare=2, most=10_000),
+    "title": ReportView(plain_words, "title", 2, 0.7, "title"),
+    "prose": ReportView(plain_words, "text", 2, 1.0, "text"),
+    "errors": ReportView(plain_words, "errors", 2, 0.6, "log"),
+    "title-general": ReportView(general_words, "title", 3, 0.7, "title"),
+    "prose-general": ReportView(general_words, "text", 3, 1.0, "text"),
+    "errors-general": ReportView(general_words, "errors", 2, 0.6, "log"),
+    "letters": ReportView(letters, "whole", 1, 1.0, "", rare=2, most=10_000),
 }
 """Names of the views, which the model file uses too."""
 
 
-class Reading(NamedTuple):
+class ReportReading(NamedTuple):
     """What is known of a report: how often each n-gram stands in each view, and the strength of each sign."""
 
     grams: dict[str, Counter[str]]
     signs: list[float]
 
 
-def read(title: str, body: str) -> Reading:
+def read(title: str, body: str) -> ReportReading:
     """Reads a report; any text will do."""
     parts = parts_of(title, body)
     texts = {
@@ -60,4 +60,4 @@ def read(title: str, body: str) -> Reading:
     }
     words = {name: view.words(texts[view.part])[: view.most] for name, view in VIEWS.items()}
     grams = {name: Counter(n_grams(words[name], view.longest)) for name, view in VIEWS.items()}
-    return Reading(grams, signs_of(parts, words["prose-general"]))
+    return ReportReading(grams, signs_of(parts, words["prose-general"]))

@@ -25,7 +25,7 @@ from ..corpus.report import LABELS, CorpusError, Report, read_labels
 from ..corpus.store import open_reports
 from .features import Counts, Signs, Words, count
 from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
-from .reading import VIEWS, Reading, read
+from .reading import VIEWS, ReportReading, read
 from .signs import DIGEST
 
 FEWEST = 8
@@ -124,7 +124,7 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> E
             f"{reports}: all reports are of one repository; without a second one nothing can be calibrated: add one"
         )
 
-    def readings() -> Iterator[Reading]:
+    def readings() -> Iterator[ReportReading]:
         for number, example in enumerate(found, 1):
             yield read(example.report.title, example.report.body)
             if progress:

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 from ..corpus.distros import DISTROS, ROS2
 from ..edges.console import escape_json, visible, write_json
-from .model import ClassifierError, Known, Model, Reason, Verdict, load
+from .model import ClassifierError, KnownReport, Model, ModelVerdict, Reason, load
 from .reading import read
 
 GITHUB_API = "ROSIMPACT_GITHUB_API"
@@ -57,9 +57,9 @@ class Triage(NamedTuple):
     """What is said of a report. checks: commands to run next, those that exist."""
 
     id: str
-    verdict: Verdict
+    verdict: ModelVerdict
     reasons: list[Reason]
-    nearest: list[Known]
+    nearest: list[KnownReport]
     checks: list[str]
 
 

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, Protocol
 
 from .report import Report, repository_of
-from .store import Asked, Gathered, Page, Store, Taken
+from .store import AskedReport, GatheredReport, Page, Store, Taken
 
 _NUMBER = re.compile("[0-9]{1,12}")
 _REFRESH = "refresh"
 _AT_ONCE = 100
 
 
-class Source(Protocol):
+class ReportSource(Protocol):
     """Where reports come from in pages. name: unique to what is asked for; its state is kept under it."""
 
     @property
@@ -28,7 +28,7 @@ class Source(Protocol):
 class Service(Protocol):
     """Where reports can be asked for by their ids."""
 
-    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """known: (id, ETag of what is at hand, or nothing). The answers come in any order, each id's once."""
         ...
 
@@ -41,7 +41,7 @@ class Progress(NamedTuple):
     taken: Taken
 
 
-def gather(source: Source, store: Store, tell: Callable[[Progress], None] = lambda progress: None) -> Taken:
+def gather(source: ReportSource, store: Store, tell: Callable[[Progress], None] = lambda progress: None) -> Taken:
     """Reads a source to its end, from where it was left. Whatever is raised on the way, the pages told are stored."""
     taken = Taken()
     for page in source.pages(store.state(source.name)):
@@ -86,7 +86,7 @@ def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str])
     """Stores the texts of ids that are at hand already; those that the store has are left as they are. Returns what
     became of them, and how many reports were of no such id."""
     taken, others = Taken(), 0
-    part: list[Gathered] = []
+    part: list[GatheredReport] = []
     for report in reports:
         kept = store.kept(report.id)
         if report.id not in ids:
@@ -94,7 +94,7 @@ def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str])
         elif kept is not None and not kept.gone:
             taken = taken.plus(Taken(same=1))
         else:
-            part.append(Gathered(report, origin="import"))
+            part.append(GatheredReport(report, origin="import"))
             if len(part) == _AT_ONCE:
                 taken, part = taken.plus(store.put(part)), []
     return taken.plus(store.put(part)), others
@@ -130,7 +130,7 @@ def refresh(
             for asked in service.ask((known.id, known.etag) for known in part):
                 if asked.what == "gone" and source == "ros-answers" and kept[asked.id].origin == "import":
                     # the archive never held all questions: that one is not in it says nothing of its deletion
-                    asked = Asked(asked.id, "same")
+                    asked = AskedReport(asked.id, "same")
                 taken = taken.plus(_settle(asked, source, store))
                 done += 1
                 tell(Progress(done, total, taken))
@@ -141,7 +141,7 @@ def refresh(
     return taken
 
 
-def _settle(asked: Asked, source: str, store: Store) -> Taken:
+def _settle(asked: AskedReport, source: str, store: Store) -> Taken:
     if asked.gathered is not None:
         return store.put([asked.gathered])
     if asked.what == "gone":

@@ -20,7 +20,7 @@ from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports
 from .store import Store, open_reports, store_path
 
 if TYPE_CHECKING:
-    from .gather import Service, Source
+    from .gather import ReportSource, Service
     from .sources.github import GitHub
     from .sources.stack_exchange import StackExchange
 
@@ -156,7 +156,7 @@ def _until_later(work: Callable[[], int]) -> int:
 def _sources(
     what: str, since: str, pulls: bool, search: str, tags: Sequence[str], archive: Path | None, pages: Path | None,
     manner: Manner, store: Store,
-) -> list[tuple[Source, Client | None]]:  # fmt: skip
+) -> list[tuple[ReportSource, Client | None]]:  # fmt: skip
     """The sources that a command names, each with the client it speaks through."""
     from .sources import ros_answers
 
@@ -202,7 +202,7 @@ def _no_stray_options(name: str, **given: object) -> None:
             raise CorpusError(f"--{flag}: says nothing to {name}; leave it out")
 
 
-def _gathered(source: Source, client: Client | None, store: Store, manner: Manner) -> None:
+def _gathered(source: ReportSource, client: Client | None, store: Store, manner: Manner) -> None:
     from . import gather as jobs
 
     with Reporter(source.name, verbose=manner.verbose, quiet=manner.quiet) as reporter:

@@ -19,7 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..edges.console import visible_lines
-from .labelling import WHY_LIMIT, Given, Session, Suggest
+from .labelling import WHY_LIMIT, GivenLabel, Session, Suggest
 from .report import KINDS, LABELS, PHASES, CorpusError, Report
 
 GUIDE_FILE = Path(__file__).parent / "GUIDE.md"
@@ -173,7 +173,7 @@ class Screen:
         if not self._why.strip():
             self.message = "say why in a few words of your own, then press Enter"
             return
-        given = Given(self._label, self._kind, self._phase, " ".join(self._why.split()))
+        given = GivenLabel(self._label, self._kind, self._phase, " ".join(self._why.split()))
         try:
             self.session.answer(given)
         except ValueError as error:

@@ -32,7 +32,7 @@ WHY_LIMIT = 200
 _JOURNAL = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0) | os.O_NONBLOCK
 
 
-class Given(msgspec.Struct, frozen=True):
+class GivenLabel(msgspec.Struct, frozen=True):
     """One person's answer. kind is None for labels without kinds."""
 
     label: str
@@ -41,7 +41,7 @@ class Given(msgspec.Struct, frozen=True):
     why: str
 
 
-class Event(msgspec.Struct, frozen=True, omit_defaults=True):
+class JournalEvent(msgspec.Struct, frozen=True, omit_defaults=True):
     """One line of the journal.
 
     event: `answer`, `undo` (of the answer with the same before and after) or `merged` (all lines up to here are in the
@@ -54,7 +54,7 @@ class Event(msgspec.Struct, frozen=True, omit_defaults=True):
     annotator: str = ""
     mode: str = ""
     id: str = ""
-    given: Given | None = None
+    given: GivenLabel | None = None
     suggested: bool = False
     before: Label | None = None
     after: Label | None = None
@@ -65,7 +65,7 @@ def journal_of(labels_file: Path) -> Path:
     return labels_file.with_name(f"{labels_file.stem}.journal.jsonl")
 
 
-def read_journal(path: Path) -> list[Event]:
+def read_journal(path: Path) -> list[JournalEvent]:
     """The lines of a journal; empty when there is none. A last line that a crash cut short is left out.
 
     Raises CorpusError."""
@@ -82,15 +82,15 @@ def current_labels(labels_file: Path) -> dict[str, Label]:
     return labels
 
 
-def unmerged(events: Sequence[Event]) -> list[Event]:
+def unmerged(events: Sequence[JournalEvent]) -> list[JournalEvent]:
     """The answers and undos since the last `merged` line."""
     last = max((i for i, event in enumerate(events) if event.event == "merged"), default=-1)
     return list(events[last + 1 :])
 
 
-def standing(events: Iterable[Event]) -> list[Event]:
+def standing(events: Iterable[JournalEvent]) -> list[JournalEvent]:
     """The answers that were not taken back, oldest first."""
-    found: list[Event] = []
+    found: list[JournalEvent] = []
     for event in events:
         if event.event == "answer":
             found.append(event)
@@ -115,7 +115,7 @@ def chosen(reports: Iterable[Report], sources: Sequence[str], repositories: Sequ
 
 
 def offered(
-    reports: Iterable[Report], labels: dict[str, Label], events: Sequence[Event], mode: str, annotator: str
+    reports: Iterable[Report], labels: dict[str, Label], events: Sequence[JournalEvent], mode: str, annotator: str
 ) -> list[Report]:
     """The reports that a session in this mode would show to this annotator, in the order of the reports.
 
@@ -136,7 +136,7 @@ def offered(
     return [report for report in reports if open_for(report.id)]
 
 
-def answered(before: Label | None, id: str, given: Given, mode: str) -> Label:
+def answered(before: Label | None, id: str, given: GivenLabel, mode: str) -> Label:
     """The label that an answer makes. before: the row so far, None for a first reading.
 
     Two readings agree when label, kind and phase are the same; else the first one stands for now, as `disputed`.
@@ -157,15 +157,15 @@ def answered(before: Label | None, id: str, given: Given, mode: str) -> Label:
     return label
 
 
-def opinions(label: Label, events: Sequence[Event]) -> list[Given]:
+def opinions(label: Label, events: Sequence[JournalEvent]) -> list[GivenLabel]:
     """What each annotator said of a disputed report, first and second, without names. Kind, phase and reason are empty
     where only the label is at hand."""
     answers = [event for event in standing(events) if event.id == label.id and event.given]
     first = next((event.given for event in reversed(answers) if event.mode == "first"), None)
     second = next((event.given for event in reversed(answers) if event.mode == "second"), None)
-    found = [first or Given(label.label, label.kind, label.phase, label.why)]
+    found = [first or GivenLabel(label.label, label.kind, label.phase, label.why)]
     if label.twice:
-        found.append(second or Given(label.annotators[1], None, "", ""))
+        found.append(second or GivenLabel(label.annotators[1], None, "", ""))
     return found
 
 
@@ -209,7 +209,7 @@ class Session:
         return self.queue[0] if self.queue else None
 
     @property
-    def opinions(self) -> list[Given]:
+    def opinions(self) -> list[GivenLabel]:
         """What the annotators said of the current report; only when disagreements are decided, else empty."""
         if self.mode != "disagreements" or not self.queue:
             return []
@@ -220,12 +220,14 @@ class Session:
         if self.queue:
             self._suggested.add(self.queue[0].id)
 
-    def answer(self, given: Given) -> None:
+    def answer(self, given: GivenLabel) -> None:
         """Takes the answer on the current report; it is on disk when this returns. Raises ValueError, CorpusError."""
         id = self.queue[0].id
         before = self.labels.get(id)
         after = answered(before, id, given, self.mode)
-        event = Event("answer", _now(), self.annotator, self.mode, id, given, id in self._suggested, before, after)
+        event = JournalEvent(
+            "answer", _now(), self.annotator, self.mode, id, given, id in self._suggested, before, after
+        )
         self._journal.append(event)
         _apply(self.labels, event)
         self.queue.pop(0)
@@ -235,7 +237,7 @@ class Session:
         """Puts the current report off until the next session."""
         del self.queue[:1]
 
-    def undo(self) -> Event | None:
+    def undo(self) -> JournalEvent | None:
         """Takes this annotator's last answer in this mode back, of an earlier session too. The report is shown again.
 
         Returns the answer taken back, or None when there is none, or when the label has been changed since.
@@ -264,7 +266,7 @@ class Session:
         if not unmerged(self._journal.events):
             return
         write_rows(self.labels_file, _rows(self.labels_file, self.labels))
-        self._journal.append(Event("merged", _now()))
+        self._journal.append(JournalEvent("merged", _now()))
 
 
 class _Journal:
@@ -272,7 +274,7 @@ class _Journal:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.events: list[Event] = []
+        self.events: list[JournalEvent] = []
         try:
             check_writable_path(path)
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -293,7 +295,7 @@ class _Journal:
             os.close(self._file)
             raise
 
-    def append(self, event: Event) -> None:
+    def append(self, event: JournalEvent) -> None:
         line = msgspec.json.encode(event) + b"\n"
         try:
             if os.write(self._file, line) != len(line):
@@ -327,10 +329,10 @@ def _bytes_of(path: Path) -> bytes:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; make it readable") from None
 
 
-def _parsed(path: Path, data: bytes) -> tuple[list[Event], int]:
+def _parsed(path: Path, data: bytes) -> tuple[list[JournalEvent], int]:
     """The events in a journal's bytes, and the length of what is whole."""
-    decoder = msgspec.json.Decoder(Event)
-    events: list[Event] = []
+    decoder = msgspec.json.Decoder(JournalEvent)
+    events: list[JournalEvent] = []
     at = 0
     for number, line in enumerate(data.splitlines(keepends=True), 1):
         try:
@@ -344,7 +346,7 @@ def _parsed(path: Path, data: bytes) -> tuple[list[Event], int]:
     return events, at
 
 
-def _apply(labels: dict[str, Label], event: Event) -> None:
+def _apply(labels: dict[str, Label], event: JournalEvent) -> None:
     row = event.after if event.event == "answer" else event.before
     if row is None:
         labels.pop(event.id, None)

@@ -72,7 +72,7 @@ class Refused(CorpusError):
         self.status = status
 
 
-class Answer(NamedTuple):
+class ServiceAnswer(NamedTuple):
     """What a service said. headers: names in lower case. url: where it came from after redirects, without its query."""
 
     status: int
@@ -150,7 +150,7 @@ class Client:
         *,
         lane: str = "",
         accept: Iterable[int] = (),
-    ) -> Answer:
+    ) -> ServiceAnswer:
         """Fetches an address. Redirects are followed on the same host alone, never from https to http.
 
         accept: statuses besides 200 that are an answer and no fault (304, 404, 410). Waits and tries again on rate
@@ -167,11 +167,11 @@ class Client:
         *,
         lane: str = "",
         accept: Iterable[int] = (),
-    ) -> tuple[Answer, Any]:
+    ) -> tuple[ServiceAnswer, Any]:
         """The same, with the body parsed (None where the status is not 200). A body that is no JSON counts as a fault
         of the moment: gateways answer with a page of their own."""
 
-        def whole(answer: Answer) -> str:
+        def whole(answer: ServiceAnswer) -> str:
             try:
                 answer.json()
             except ValueError:
@@ -218,7 +218,7 @@ class Client:
         self.waited += seconds
         self.clock.sleep(seconds)
 
-    def _get(self, url, params, headers, lane, accept, whole, target=None) -> Answer:
+    def _get(self, url, params, headers, lane, accept, whole, target=None) -> ServiceAnswer:
         sent = _with_query(url, params)
         at = _place(url)
         limited = attempt = 0
@@ -259,7 +259,7 @@ class Client:
             "what was gathered is kept, so check the address and the network and run the same command again"
         )
 
-    def _once(self, url: str, headers: dict[str, str], target) -> Answer:
+    def _once(self, url: str, headers: dict[str, str], target) -> ServiceAnswer:
         for _ in range(6):
             self.requests += 1
             try:
@@ -284,7 +284,7 @@ class Client:
                         headers.pop("Authorization", None)
                     url = onward
                     continue
-                return Answer(
+                return ServiceAnswer(
                     response.status_code,
                     urlunsplit(urlsplit(url)._replace(query="")),
                     {name.lower(): value for name, value in response.headers.items()},
@@ -338,13 +338,13 @@ class Client:
             self.clock.sleep(min(rest, self._spacing))
         self._last = self.clock.now()
 
-    def _heed(self, answer: Answer, lane: str) -> None:
+    def _heed(self, answer: ServiceAnswer, lane: str) -> None:
         """Keeps in mind that nothing remains of a quota, rather than running into its end."""
         reset = answer.headers.get("x-ratelimit-reset", "")
         if answer.headers.get("x-ratelimit-remaining") == "0" and _is_number(reset):
             self.hold(lane, int(reset) + 1 - self.clock.now(), "the rate limit is reached")
 
-    def _limit(self, answer: Answer, before: int) -> float | None:
+    def _limit(self, answer: ServiceAnswer, before: int) -> float | None:
         """Seconds to wait after a 4xx, in the order that GitHub's documentation gives; None when it is no limit.
 
         before: how often that was asked already for this request.
@@ -465,7 +465,7 @@ class _Fault(Exception):
     """What went wrong with one request, as a clause whose subject is the address."""
 
 
-def _refusal(service: str, at: str, answer: Answer) -> Refused:
+def _refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
     said = ""
     with contextlib.suppress(ValueError, AttributeError):
         said = _clean(str(answer.json().get("message") or answer.json().get("error_message") or ""))[:200]
@@ -480,7 +480,7 @@ def _refusal(service: str, at: str, answer: Answer) -> Refused:
     return Refused(f"{service}: {at} answered with status {answer.status}{says}; {help}", answer.status)
 
 
-def _retry_after(answer: Answer, now: float) -> float | None:
+def _retry_after(answer: ServiceAnswer, now: float) -> float | None:
     """Seconds asked for by a Retry-After header, which holds seconds or a date; None without one."""
     value = answer.headers.get("retry-after", "").strip()
     if _is_number(value):

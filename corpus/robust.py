@@ -59,14 +59,14 @@ class Mapped(msgspec.Struct, frozen=True, omit_defaults=False):
     why: str
 
 
-class Row(Label, frozen=True):
+class MappedRow(Label, frozen=True):
     """A mapped record as a line of a labels file; whoever reads labels passes over what it has beyond a Label."""
 
     confidence: str
     record: str
 
 
-class Verdict(NamedTuple):
+class CodesVerdict(NamedTuple):
     """What codes say: label, kind, confidence and the reason."""
 
     label: str | None
@@ -122,13 +122,13 @@ def map_record(record: Mapping[str, Any], stem: str) -> Mapped:
 
 def verdict(
     codes: Sequence[str], failures: Sequence[str], classification: str, words: str, severity: str = "error"
-) -> Verdict:
+) -> CodesVerdict:
     """What a record's codes say. codes, failures: its fault and failure codes, `FAMILY:NAME`. words: keywords,
     classification and title, in which the kind is looked for where codes do not give it."""
     if severity == "not-a-bug" or "NOT-A-BUG" in codes:
-        return Verdict(None, None, UNMAPPED, "ROBUST counts it as no bug")
+        return CodesVerdict(None, None, UNMAPPED, "ROBUST counts it as no bug")
     if not codes:
-        return Verdict(None, None, UNMAPPED, "no fault code")
+        return CodesVerdict(None, None, UNMAPPED, "no fault code")
     families: dict[str, list[str]] = {}
     for code in codes:
         family, _, name = code.partition(":")
@@ -138,39 +138,41 @@ def verdict(
     if evolved:
         kind, certain = _evolution_kind(evolved, words)
         alone = set(families) == {"EVOLUTION"}
-        return Verdict("library-update", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
+        return CodesVerdict("library-update", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
     linked = any(name in _LINK for name in families.get("CONFIG", ()))
     if re.search(r"installation dependenc", classification, re.IGNORECASE):
-        return Verdict("other", None, LIKELY, f"ROBUST: {told}, the package's own files are not installed")
+        return CodesVerdict("other", None, LIKELY, f"ROBUST: {told}, the package's own files are not installed")
     if "DEPENDENCY" in families.get("BDO", ()):
         if linked:
-            return Verdict(None, None, UNMAPPED, f"ROBUST: {told}; which of the two causes counts is in the report")
+            return CodesVerdict(
+                None, None, UNMAPPED, f"ROBUST: {told}; which of the two causes counts is in the report"
+            )
         kind, certain = _dependency_kind(classification, words)
         alone = set(codes) <= {"BDO:DEPENDENCY", "BDO:BUILD"}
-        return Verdict("dependency", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
+        return CodesVerdict("dependency", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
     if "BUILD" in families.get("BDO", ()) and re.search(r"dependenc", classification, re.IGNORECASE):
         kind, _ = _dependency_kind(classification, words)
-        return Verdict("dependency", kind, LIKELY, f"ROBUST: {told}, {_plain(classification)}")
+        return CodesVerdict("dependency", kind, LIKELY, f"ROBUST: {told}, {_plain(classification)}")
     if linked:
-        return Verdict("inconsistency", "connection", LIKELY, f"ROBUST: {told}")
+        return CodesVerdict("inconsistency", "connection", LIKELY, f"ROBUST: {told}")
     if "TRANSFORMATIONS" in families.get("MODELS", ()):
-        return Verdict("inconsistency", "frame-time", LIKELY, f"ROBUST: {told}")
+        return CodesVerdict("inconsistency", "frame-time", LIKELY, f"ROBUST: {told}")
     if "SYSTEMS" in families:
-        return Verdict(None, None, UNMAPPED, f"ROBUST: {told}; whether the platform is blamed is in the report")
+        return CodesVerdict(None, None, UNMAPPED, f"ROBUST: {told}; whether the platform is blamed is in the report")
     if "CONFIG" in families:
-        return Verdict(None, None, UNMAPPED, f"ROBUST: {told}; whether two sides disagree is in the report")
+        return CodesVerdict(None, None, UNMAPPED, f"ROBUST: {told}; whether two sides disagree is in the report")
     if set(families) == {"MODELS"} or set(families) == {"BDO"}:
-        return Verdict("other", None, LIKELY, f"ROBUST: {told}")
+        return CodesVerdict("other", None, LIKELY, f"ROBUST: {told}")
     if any(
         code in failures for code in ("SOFTWARE:BEHAVIORAL", "SOFTWARE:NETWORK", "SOFTWARE:UX", "SYSTEM:MONITORING")
     ):
-        return Verdict(
+        return CodesVerdict(
             None, None, UNMAPPED, f"ROBUST: {told}; whether others were sent wrong values, or none, is in the report"
         )
-    return Verdict("other", None, LIKELY, f"ROBUST: {told}")
+    return CodesVerdict("other", None, LIKELY, f"ROBUST: {told}")
 
 
-def rows_of(mapped: Sequence[Mapped]) -> Iterator[Row]:
+def rows_of(mapped: Sequence[Mapped]) -> Iterator[MappedRow]:
     """The lines of a labels file: every report that has a label and a phase, each once. Where several records name one
     report and differ, it is left out."""
     by_id: dict[str, list[Mapped]] = {}
@@ -180,7 +182,7 @@ def rows_of(mapped: Sequence[Mapped]) -> Iterator[Row]:
     for id, records in by_id.items():
         first = records[0]
         if all((other.label, other.kind, other.phase) == (first.label, first.kind, first.phase) for other in records):
-            yield Row(
+            yield MappedRow(
                 id, str(first.label), first.kind, str(first.phase), first.why, (str(first.label),), "imported",
                 first.confidence, first.record,
             )  # fmt: skip

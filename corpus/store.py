@@ -57,7 +57,7 @@ CREATE TABLE gathering (name TEXT PRIMARY KEY, state BLOB NOT NULL, finished INT
 """
 
 
-class Gathered(NamedTuple):
+class GatheredReport(NamedTuple):
     """A report as a source gave it.
 
     raw: the answer it was read from, reduced to what may be kept. digest: of the answer as it came, where reading it
@@ -81,7 +81,7 @@ class Page(NamedTuple):
     and the new `owner/name` of a repository whose reports these are.
     """
 
-    reports: list[Gathered]
+    reports: list[GatheredReport]
     state: dict[str, Any]
     finished: bool = False
     done: int = 0
@@ -91,12 +91,12 @@ class Page(NamedTuple):
     moved: tuple[str, str] | None = None
 
 
-class Asked(NamedTuple):
+class AskedReport(NamedTuple):
     """What became of a report that was asked for by its id. what: `here`, `same` (as its ETag says) or `gone`."""
 
     id: str
     what: str
-    gathered: Gathered | None = None
+    gathered: GatheredReport | None = None
 
 
 class Taken(NamedTuple):
@@ -217,7 +217,7 @@ class Store:
             )
         return taken
 
-    def put(self, reports: Iterable[Gathered]) -> Taken:
+    def put(self, reports: Iterable[GatheredReport]) -> Taken:
         """Writes reports outside any gathering, all or nothing."""
         now = self.now()
         taken = Taken()
@@ -333,7 +333,7 @@ class Store:
             posts.setdefault(original, []).append((not wanted, key != original, key))
         return {key for group in posts.values() for _, _, key in sorted(group)[1:]}
 
-    def _put(self, gathered: Gathered, now: float) -> Taken:
+    def _put(self, gathered: GatheredReport, now: float) -> Taken:
         report = gathered.report
         key = report.id.lower()
         self._own(key)

@@ -24,7 +24,7 @@ from pathlib import Path
 import msgspec
 
 from ..edges.files import write_file
-from ..impact.targets.providers.apt import INFERRED, Graph
+from ..impact.targets.providers.apt import INFERRED, AptGraph
 from ..impact.targets.providers.providers import Providers
 from ..impact.targets.snapshot import DATA, default
 from .providers import dependencies_of, read_keys
@@ -80,7 +80,7 @@ def inferred(providers: Iterable[tuple[str, ...]]) -> dict[str, set[str]]:
 
 def graph(
     suites: Mapping[str, Mapping[str, Iterable[str]]], keys: frozenset[str], seen: Mapping[str, set[str]]
-) -> Graph:
+) -> AptGraph:
     """suites: platform to package to what it depends on. keys: packages of rosdep keys. seen: as inferred() gives."""
     base = sorted(set().union(*(reachable(depends, BASE) for depends in suites.values())))
     wanted = keys - frozenset(base)
@@ -100,7 +100,7 @@ def graph(
         for name, found in sorted(edges.items())
         if found
     }
-    return Graph(tuple(suites), tuple(names), tuple(place_of[name] for name in base), brings)
+    return AptGraph(tuple(suites), tuple(names), tuple(place_of[name] for name in base), brings)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -49,7 +49,7 @@ class ClusterError(UserError):
     """A cluster that cannot do the work; the message says why and what to do."""
 
 
-class Code(NamedTuple):
+class CodeState(NamedTuple):
     """What the results of a process depend on, beside the clones. python: syntax trees differ between its versions."""
 
     version: str
@@ -57,7 +57,7 @@ class Code(NamedTuple):
     digest: str
 
     @classmethod
-    def here(cls) -> Code:
+    def here(cls) -> CodeState:
         from ..edges.version import __version__
 
         return cls(__version__, "{}.{}".format(*sys.version_info), code_digest())
@@ -92,14 +92,14 @@ def done_by(address: str, jobs: Sequence[Job]) -> Generator[tuple[Job, Result], 
     except (OSError, ValueError, ImportError) as error:
         raise ClusterError(f"--dask {address}: {error}; give the address of a running `dask scheduler`") from None
     try:
-        code = Code.here()
+        code = CodeState.here()
         _check(client, address, code, sorted({state.place for job in jobs for state in job.states}))
         yield from _done(client, address, code, jobs)
     finally:
         client.close()
 
 
-def _check(client: Any, address: str, code: Code, places: list[str]) -> None:
+def _check(client: Any, address: str, code: CodeState, places: list[str]) -> None:
     """Raises ClusterError unless there are workers and each can do the work."""
     try:
         client.wait_for_workers(1, timeout=_REACH)
@@ -121,10 +121,10 @@ def _reason(answer: str | Exception) -> str:
     return f"cannot work: {' '.join(str(answer).split())[:200]}"
 
 
-def _unfit(code: Code, places: Sequence[str]) -> str:
+def _unfit(code: CodeState, places: Sequence[str]) -> str:
     """Why this process cannot do jobs on these clones, as the rest of a sentence; empty when it can."""
-    if Code.here() != code:
-        return f"has {Code.here()}, and here is {code}; install there what is installed here, and start it again"
+    if CodeState.here() != code:
+        return f"has {CodeState.here()}, and here is {code}; install there what is installed here, and start it again"
     lacking = [place for place in places if git_directory(Path(place)) is None]
     if lacking:
         more = f" and {len(lacking) - 1} more of {len(places)} clones" if len(lacking) > 1 else ""
@@ -132,7 +132,7 @@ def _unfit(code: Code, places: Sequence[str]) -> str:
     return ""
 
 
-def _work(code: Code, job: Job) -> Result | str:
+def _work(code: CodeState, job: Job) -> Result | str:
     """Does a job on a worker; says why it cannot be done there. Workers come later too, and clones are fetched."""
     from .jobs import run
 
@@ -151,7 +151,7 @@ def _work(code: Code, job: Job) -> Result | str:
     return run(job)
 
 
-def _done(client: Any, address: str, code: Code, jobs: Sequence[Job]) -> Iterator[tuple[Job, Result]]:
+def _done(client: Any, address: str, code: CodeState, jobs: Sequence[Job]) -> Iterator[tuple[Job, Result]]:
     from distributed import as_completed
 
     running = {client.submit(_work, code, job, pure=False): job for job in jobs}

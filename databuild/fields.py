@@ -51,7 +51,7 @@ _ASIDE = frozenset({"test", "tests", "testing", "doc", "docs", "example", "examp
 _KINDS = ("msg", "srv", "action")
 
 
-class Reader:
+class FieldsReader:
     """Released packages of a git repository at any commit. repository: a pygit2.Repository."""
 
     def __init__(self, repository, wanted: frozenset[str]):
@@ -145,7 +145,7 @@ def read_repository(repository, wanted: frozenset[str]) -> Iterator[Released]:
     """Every wanted package at every tag; first those whose version the tag's name tells."""
     import pygit2
 
-    reader = Reader(repository, wanted)
+    reader = FieldsReader(repository, wanted)
     later = []
     for ref in sorted(r for r in repository.references if r.startswith("refs/tags/")):
         try:

@@ -60,7 +60,7 @@ _EXTRA_INCLUDE = re.compile(r"_INCLUDE_DIRS\b[^)]*?(?:include|INCLUDE_DESTINATIO
 _TREE = "tree"
 
 
-class Reader:
+class SurfaceReader:
     """Surfaces of the packages in a git repository at any commit. repository: a pygit2.Repository."""
 
     def __init__(self, repository):
@@ -171,7 +171,7 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
         if where is None:
             continue
         repository = pygit2.Repository(str(where))
-        reader = Reader(repository)
+        reader = SurfaceReader(repository)
         tags = {ref.removeprefix("refs/tags/"): ref for ref in repository.references if ref.startswith("refs/tags/")}
         releases = releases_of(data, clone.name.replace("+", "/"))
         surfaces = list(_tips(repository, reader, releases))
@@ -211,7 +211,7 @@ def _tree(repository, ref: str):
         return None
 
 
-def _tips(repository, reader: Reader, releases: list[Release]) -> Iterator[Surface]:
+def _tips(repository, reader: SurfaceReader, releases: list[Release]) -> Iterator[Surface]:
     """Packages at the branches' ends that any distro released: who has a header, not since when."""
     released = frozenset().union(*(release.packages for release in releases)) if releases else frozenset()
     for ref in repository.references:

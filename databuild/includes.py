@@ -403,7 +403,7 @@ def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries, sparse) -> includes.Table:
+def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries, sparse) -> includes.IncludesTable:
     """states: owner to version to header to its includes."""
     places: dict[str, int] = {}
     owners = {}
@@ -421,7 +421,7 @@ def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries
             rows[header] = ";".join(runs)
         owners[owner] = rows
     read = {owner: tuple(sorted(states[owner], key=parts)) for owner in sorted(sparse)}
-    return includes.Table(tuple(places), owners, frozenset(libraries), read)
+    return includes.IncludesTable(tuple(places), owners, frozenset(libraries), read)
 
 
 def _main() -> None:
@@ -493,7 +493,7 @@ def _main() -> None:
     _write(beside(shipped(), msgspec.structs.replace(table, names=names, announced=announced)), asked.output)
 
 
-def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
+def beside(surfaces: Surfaces, table: includes.IncludesTable) -> includes.IncludesTable:
     """The table without what stored surfaces tell: what their packages' headers include, from the first stored version
     of each on. Names get the headers that define or announce them there."""
     numbers: dict[str, int] = {}
@@ -559,7 +559,9 @@ _States = dict[str, dict[str, dict[str, tuple[str, ...]]]]
 """Owner to version to header to what it includes."""
 
 
-def onto(known: includes.Table, states: _States, libraries: Iterable[str], sparse: Iterable[str]) -> includes.Table:
+def onto(
+    known: includes.IncludesTable, states: _States, libraries: Iterable[str], sparse: Iterable[str]
+) -> includes.IncludesTable:
     """A table with more versions and owners. Which types stopped coming along stays as it was."""
     merged: _States = {}
     for owner, headers in known.owners.items():
@@ -583,7 +585,7 @@ def _runs(text: str) -> list[tuple[str, str]]:
     return [(version, places) for version, _, places in (run.partition(" ") for run in text.split(";"))]
 
 
-def _versions(distro: str, table: includes.Table) -> dict[str, str]:
+def _versions(distro: str, table: includes.IncludesTable) -> dict[str, str]:
     """The version of each owner in a distro, as the shipped snapshot has it at its end."""
     target = DistroTarget(distro)
     found = {"gcc": target.library("gcc") or ""}
@@ -592,7 +594,7 @@ def _versions(distro: str, table: includes.Table) -> dict[str, str]:
     return {owner: version for owner, version in found.items() if version}
 
 
-def _stopped(table: includes.Table, ros: int) -> set[str]:
+def _stopped(table: includes.IncludesTable, ros: int) -> set[str]:
     """Types of which some header brings the definition in one distro and not in the next."""
     distros = [d for d in DISTROS if d != "rolling" and DistroTarget(d).ros == ros]
     found: set[str] = set()
@@ -613,7 +615,7 @@ def _stopped(table: includes.Table, ros: int) -> set[str]:
     return found
 
 
-def _write(table: includes.Table, output: Path) -> None:
+def _write(table: includes.IncludesTable, output: Path) -> None:
     plain = msgspec.to_builtins(table, order="deterministic")
     raw = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
     write_file(output / "includes.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))

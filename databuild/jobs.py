@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..impact.facts.store import Store
-from ..impact.targets.surface.compare import State
+from ..impact.targets.surface.compare import RepositorySurfaces
 from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
 from .surface.clones import Clone
@@ -62,7 +62,12 @@ class Packing:
         self._lines = Lines()
 
     def add(
-        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+        self,
+        package: str,
+        version: str,
+        generations: Sequence[int],
+        state: RepositorySurfaces,
+        approximate: bool = False,
     ) -> None:
         """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
         both. approximate: a branch stands for it."""
@@ -87,13 +92,13 @@ def run(job: Job) -> Result:
     clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
     packing = Packing()
     failed: list[str] = []
-    read: dict[str, State] = {}
+    read: dict[str, RepositorySurfaces] = {}
     with Store() as store:
         for state, tree in zip(job.states, job.trees, strict=True):
             if tree not in read:
                 read.clear()  # one state at a time is enough
                 try:
-                    read[tree] = State(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
+                    read[tree] = RepositorySurfaces(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
                 except (TreeError, OSError) as error:
                     failed.append(f"{state.clone} {state.version}: {error}")
                     continue

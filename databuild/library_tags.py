@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _ENDING = r"\.(?:h|hpp|hh|hxx|inl|ipp)"
 
 
-class Sources(NamedTuple):
+class LibraryClones(NamedTuple):
     """The clones of a library. names: their folders, `OWNER+NAME`, with `*` for any. headers: paths in them, whose
     group `path` is how they are included. below: what stands before that."""
 
@@ -34,8 +34,8 @@ class Sources(NamedTuple):
     below: str = ""
 
 
-def _sources(names: str, headers: str, below: str = "") -> Sources:
-    return Sources(names, re.compile(rf"(?:{headers})\Z"), below)
+def _sources(names: str, headers: str, below: str = "") -> LibraryClones:
+    return LibraryClones(names, re.compile(rf"(?:{headers})\Z"), below)
 
 
 def _of_include(folder: str) -> str:
@@ -121,7 +121,7 @@ def _versions(repository: pygit2.Repository, oldest: str) -> dict[str, pygit2.Tr
     return {version: tree for version, tree in found.items() if at_least(version, first)}
 
 
-def _headers(tree: pygit2.Tree, told: Sources) -> Iterator[tuple[str, pygit2.Blob]]:
+def _headers(tree: pygit2.Tree, told: LibraryClones) -> Iterator[tuple[str, pygit2.Blob]]:
     import pygit2
 
     stack = [(tree, "")]

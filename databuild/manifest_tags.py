@@ -22,7 +22,7 @@ from typing import Any
 from ..impact.targets.distro.distro import version_key
 from ..impact.targets.snapshot import DATA, Snapshot, shipped_info, unpack
 from .git import open_repository
-from .manifests import Declared, changes_only, parse_manifest
+from .manifests import DeclaredVersion, changes_only, parse_manifest
 from .surface.releases import Release, git_directory, releases_of, tag_of
 from .write import write_snapshot
 
@@ -30,7 +30,7 @@ _TREE = "tree"
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
-class Reader:
+class ManifestReader:
     """Manifests of a git repository's packages at any commit. repository: a pygit2.Repository."""
 
     def __init__(self, repository: Any):
@@ -57,7 +57,7 @@ class Reader:
                 yield from self.manifests(entry).items()
 
 
-def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[Declared]:
+def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[DeclaredVersion]:
     """What the packages of each release declare in the tree of its tag. name: `owner/name` of the repository.
 
     A release without a tag gives nothing, nor does a package that the tagged tree lacks or has in another version.
@@ -65,7 +65,7 @@ def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[Decl
     import pygit2
 
     repository = open_repository(place)
-    reader = Reader(repository)
+    reader = ManifestReader(repository)
     tags = {ref.removeprefix("refs/tags/"): ref for ref in repository.references if ref.startswith("refs/tags/")}
     for release in releases:
         ref = tag_of(tags, release.version, name.rpartition("/")[2])
@@ -85,7 +85,7 @@ def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[Decl
 _BLOOM = re.compile(r"release/([a-z]+)/([\w-]+)/([\d.]+)-\d+\Z")
 
 
-def read_release_clone(place: Path) -> Iterator[Declared]:
+def read_release_clone(place: Path) -> Iterator[DeclaredVersion]:
     """The same for a release repository of bloom's, where each package of each distro has a tag of its own."""
     import pygit2
 
@@ -104,9 +104,9 @@ def read_release_clone(place: Path) -> Iterator[Declared]:
             yield declared
 
 
-def read_clones(folder: Path, snapshot: Snapshot) -> list[Declared]:
+def read_clones(folder: Path, snapshot: Snapshot) -> list[DeclaredVersion]:
     """The same for all clones in a folder, one entry where the declaration changed with a version."""
-    found: list[Declared] = []
+    found: list[DeclaredVersion] = []
     for clone in sorted(folder.iterdir()):
         where = git_directory(clone) if clone.is_dir() else None
         if where is not None:
@@ -117,7 +117,7 @@ def read_clones(folder: Path, snapshot: Snapshot) -> list[Declared]:
     return changes_only(found, version_key)
 
 
-def add(raw: bytes, declared: list[Declared]) -> tuple[bytes, int]:
+def add(raw: bytes, declared: list[DeclaredVersion]) -> tuple[bytes, int]:
     """A database with these manifests too, and how many came in. raw: an unpacked database.
 
     Packages of which the database knows a manifest in that distro, from a cache or an earlier run, stay as they are.

@@ -40,7 +40,7 @@ _BOUNDS = ("version_lt", "version_lte", "version_eq", "version_gte", "version_gt
 _ORDER = "betoxsdcrgm"
 
 
-class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class DeclaredVersion(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One package version of a distro: its dependencies as lines (see snapshot.SCHEMA) and its build type."""
 
     distro: str
@@ -50,7 +50,7 @@ class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
     build_type: str
 
 
-def parse_manifest(distro: str, text: str) -> Declared | None:
+def parse_manifest(distro: str, text: str) -> DeclaredVersion | None:
     """What a package.xml declares, None when it is none. Entities are refused by size, since a manifest needs none."""
     if "<!ENTITY" in text:
         return None
@@ -74,7 +74,7 @@ def parse_manifest(distro: str, text: str) -> Declared | None:
     for (target, condition, bounds), letters in sorted(kinds.items()):
         ordered = "".join(letter for letter in _ORDER if letter in letters)
         lines.append("\t".join((target, ordered, condition, bounds)).rstrip("\t"))
-    return Declared(distro, name, version, "\n".join(lines), _build_type(root))
+    return DeclaredVersion(distro, name, version, "\n".join(lines), _build_type(root))
 
 
 def _build_type(root: ElementTree.Element) -> str:
@@ -134,10 +134,10 @@ def cache_blobs(repository: Any, done: Callable[[int], None] | None = None) -> d
     return {distro: list(blobs) for distro, blobs in found.items()}
 
 
-def read_caches(distro: str, caches: Iterable[bytes]) -> list[Declared]:
+def read_caches(distro: str, caches: Iterable[bytes]) -> list[DeclaredVersion]:
     """Every package version in a distro's caches. Where two caches disagree on one version the later one stands."""
     memo: set[bytes] = set()
-    found: dict[tuple[str, str], Declared] = {}
+    found: dict[tuple[str, str], DeclaredVersion] = {}
     for data in sorted(caches, key=cache_stamp):
         for block in split_cache(data):
             if block in memo:
@@ -161,9 +161,9 @@ def _text_of(block: bytes) -> str:
     return value if isinstance(value, str) else ""
 
 
-def changes_only(declared: Sequence[Declared], version_key: Callable[[str], list[int]]) -> list[Declared]:
+def changes_only(declared: Sequence[DeclaredVersion], version_key: Callable[[str], list[int]]) -> list[DeclaredVersion]:
     """One entry where the declaration changed with a version, in version order; what lies between is the same."""
-    by_package: dict[tuple[str, str], list[Declared]] = {}
+    by_package: dict[tuple[str, str], list[DeclaredVersion]] = {}
     for item in declared:
         by_package.setdefault((item.distro, item.package), []).append(item)
     kept = []

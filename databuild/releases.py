@@ -21,7 +21,7 @@ _BLOCK = re.compile(rb"\n(?=  [^\s#])")
 _SYSTEMS = ("ubuntu", "debian", "fedora", "rhel")
 
 
-class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class RepositoryEntry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One repository at one time. version None: it releases nothing."""
 
     version: str | None = None
@@ -31,12 +31,12 @@ class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     status: str = ""
 
 
-class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class EntryEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A repository's entry from `ts` on; None: it is no longer listed."""
 
     ts: int
     repository: str
-    entry: Entry | None
+    entry: RepositoryEntry | None
 
 
 class PlatformEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -46,13 +46,13 @@ class PlatformEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
     names: tuple[str, ...]
 
 
-class History(msgspec.Struct, frozen=True, array_like=True):
+class DistroHistory(msgspec.Struct, frozen=True, array_like=True):
     """All events of one distro, oldest first. read: file versions gone through; last: the newest one's blob.
 
     unreadable: time and reason for each version that is no YAML of the expected form; it changes nothing.
     """
 
-    events: tuple[Event, ...] = ()
+    events: tuple[EntryEvent, ...] = ()
     platforms: tuple[PlatformEvent, ...] = ()
     read: int = 0
     last: str = ""
@@ -80,7 +80,7 @@ def split_file(data: bytes) -> tuple[bytes, list[bytes]] | None:
     return data[: start.start()] + tail, [block for block in _BLOCK.split(b"\n" + body)[1:] if block.strip()]
 
 
-def parse_block(block: bytes, path: str) -> tuple[str, Entry] | None:
+def parse_block(block: bytes, path: str) -> tuple[str, RepositoryEntry] | None:
     """(repository, entry) of one block; None when it is no YAML mapping of one name. path tells the file's form."""
     try:
         parsed = yaml.load(block, Loader=_LOADER)
@@ -97,7 +97,7 @@ def parse_block(block: bytes, path: str) -> tuple[str, Entry] | None:
     if version is not None:
         listed = release.get("packages")
         packages = tuple(sorted(str(package) for package in listed)) if listed else (str(name),)
-    return str(name), Entry(
+    return str(name), RepositoryEntry(
         None if version is None else str(version),
         packages,
         str(source.get("url") or ""),
@@ -124,16 +124,19 @@ def parse_platforms(head: bytes) -> tuple[str, ...]:
 
 
 def read_history(
-    versions: Sequence[FileVersion], blob: Callable[[str], bytes], known: History | None = None, stop: int | None = None
-) -> History:
+    versions: Sequence[FileVersion],
+    blob: Callable[[str], bytes],
+    known: DistroHistory | None = None,
+    stop: int | None = None,
+) -> DistroHistory:
     """Goes through the versions of a distribution file. blob gives the bytes of an id.
 
     known: what an earlier, shorter run found; it is continued when its versions are the beginning of these.
     stop: how many versions to read at most in this call, so that progress can be saved; None: all.
     """
-    known = known or History()
+    known = known or DistroHistory()
     if not (known.read and known.read <= len(versions) and versions[known.read - 1].blob == known.last):
-        known = History()
+        known = DistroHistory()
     reader = _Reader()
     if known.read:
         reader.restore(versions[known.read - 1], blob)
@@ -148,7 +151,7 @@ def read_history(
         if problem:
             unreadable.append((version.ts, problem))
     last = versions[end - 1].blob if end else ""
-    return History(tuple(events), tuple(platforms), end, last, tuple(unreadable))
+    return DistroHistory(tuple(events), tuple(platforms), end, last, tuple(unreadable))
 
 
 class _Reader:
@@ -157,14 +160,14 @@ class _Reader:
     def __init__(self) -> None:
         self.blocks: set[bytes] = set()
         self.names: dict[bytes, str] = {}
-        self.state: dict[str, Entry] = {}
+        self.state: dict[str, RepositoryEntry] = {}
         self.head = b""
         self.path = ""
 
     def restore(self, version: FileVersion, blob: Callable[[str], bytes]) -> None:
         self.step(blob(version.blob), version, [], [])
 
-    def step(self, data: bytes, version: FileVersion, events: list[Event], platforms: list[PlatformEvent]) -> str:
+    def step(self, data: bytes, version: FileVersion, events: list[EntryEvent], platforms: list[PlatformEvent]) -> str:
         """Adds what changed with a version; gives the reason when it cannot be read."""
         parts = split_file(data)
         if parts is None:
@@ -174,7 +177,7 @@ class _Reader:
         if version.path != self.path:
             # Another form of file: a block that looks the same may say something else.
             self.blocks, self.names, self.path = set(), {}, version.path
-        found: dict[str, Entry] = {}
+        found: dict[str, RepositoryEntry] = {}
         added = blocks - self.blocks
         named: dict[bytes, str] = {}
         for block in listed if len(added) == len(listed) else (b for b in listed if b in added):
@@ -187,10 +190,10 @@ class _Reader:
         present = {self.names[block] for block in blocks}
         for name, entry in found.items():
             if self.state.get(name) != entry:
-                events.append(Event(version.ts, name, entry))
+                events.append(EntryEvent(version.ts, name, entry))
                 self.state[name] = entry
         for name in sorted(set(self.state) - present):
-            events.append(Event(version.ts, name, None))
+            events.append(EntryEvent(version.ts, name, None))
             del self.state[name]
         for block in self.blocks - blocks:
             self.names.pop(block, None)

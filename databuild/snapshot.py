@@ -16,12 +16,12 @@ from ..impact.targets.surface.store import shipped
 from .git import BuildError, Report
 from .write import DistroRow, Sync
 
-__all__ = ["BuildError", "Built", "Status", "Updated", "build", "status", "update"]
+__all__ = ["BuildError", "BuiltSnapshot", "Status", "Updated", "build", "status", "update"]
 
 _SAVE_EVERY = 2000
 
 
-class Built(NamedTuple):
+class BuiltSnapshot(NamedTuple):
     """What a build gave: sizes in bytes and counts, and per distro how many file versions could not be read."""
 
     date: str
@@ -111,7 +111,7 @@ def build(
     work: Path | None = None,
     meta_ros: Path | None = None,
     report: Report | None = None,
-) -> Built:
+) -> BuiltSnapshot:
     """Builds the snapshot from a clone of ros/rosdistro (bare or not, with its tags) and, where given, of ros/meta-ros.
 
     output: the data folder to write into. work: a folder for what was read so far (None: one in the user's cache); a
@@ -141,7 +141,7 @@ def build(
     histories = {}
     for row in distros:
         path = work / f"{row.name}.history"
-        history = _load(path, releases.History)
+        history = _load(path, releases.DistroHistory)
         total = len(versions[row.name])
         while history is None or history.read != total or history.last != _last(versions[row.name]):
             tell(f"reading {row.name}", history.read if history else 0, total)
@@ -149,11 +149,11 @@ def build(
             _save(path, history)
             if history.read >= total:
                 break
-        histories[row.name] = history or releases.History()
+        histories[row.name] = history or releases.DistroHistory()
     rule_files = {path: versions[path] for path in keys.FILES}
     count = sum(map(len, rule_files.values()))
     rules = keys.read_rules(rule_files, blob, lambda done: tell("reading rosdep rules", done, count))
-    declared: list[manifests.Declared] = []
+    declared: list[manifests.DeclaredVersion] = []
     sources = {"ros/rosdistro": str(head.id)}
     if meta_ros is not None:
         caches = git.open_repository(meta_ros)
@@ -164,11 +164,11 @@ def build(
             declared.extend(manifests.read_caches(distro, (caches[oid].data for oid in blobs)))
     known = manifests.changes_only(declared, version_key)
     date = _day(head.commit_time)
-    gathered = write.Gathered(date, sources, distros, histories, syncs, rules, known)
+    gathered = write.GatheredData(date, sources, distros, histories, syncs, rules, known)
     tell("writing", 0, 0)
     raw = write.database(gathered)
     packed = write.write_snapshot(raw, date, sources, output)
-    return Built(
+    return BuiltSnapshot(
         date,
         packed,
         len(raw),

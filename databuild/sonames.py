@@ -20,7 +20,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..edges.files import write_file
-from ..impact.targets.machine.sonames import FILE, Table
+from ..impact.targets.machine.sonames import FILE, SonamesTable
 from ..impact.targets.snapshot import DATA
 from .providers import lines_of
 
@@ -82,7 +82,7 @@ def symbols_of(libraries: Mapping[str, str], lines: Iterable[bytes]) -> dict[str
     return found
 
 
-def table_of(suites: Iterable[Suite]) -> Table:
+def table_of(suites: Iterable[Suite]) -> SonamesTable:
     """The table of all suites, a later suite's package standing for a library that several have."""
     suites = list(suites)
     bits: dict[str, int] = {}
@@ -91,7 +91,7 @@ def table_of(suites: Iterable[Suite]) -> Table:
         for name, package in suite.libraries.items():
             bits[name] = bits.get(name, 0) | 1 << place
             packages[name] = package
-    return Table(
+    return SonamesTable(
         tuple(suite.platform for suite in suites),
         tuple(suite.symbols for suite in suites),
         "\n".join(f"{name} {bits[name]} {packages[name]}" for name in sorted(bits)),

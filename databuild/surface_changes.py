@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS, Entity
-from ..impact.targets.surface.changes import Event, Form, Line, Overload, Told
-from ..impact.targets.surface.compare import Change, State, compare
+from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, Overload
+from ..impact.targets.surface.compare import RepositorySurfaces, VersionChange, compare
 from ..impact.targets.surface.python import UNKNOWN
 from .surface_file import brief, pack
 
@@ -21,17 +21,22 @@ class Lines:
     """Compares the versions of the packages of one repository as they come, oldest first."""
 
     def __init__(self) -> None:
-        self._before: dict[tuple[str, int], State] = {}
+        self._before: dict[tuple[str, int], RepositorySurfaces] = {}
         self._versions: dict[tuple[str, int], list[str]] = {}
         self._approximate: dict[tuple[str, int], list[str]] = {}
-        self._events: dict[tuple[str, int], dict[tuple[str, str], list[Event]]] = {}
+        self._events: dict[tuple[str, int], dict[tuple[str, str], list[ChangeEvent]]] = {}
 
     def add(
-        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+        self,
+        package: str,
+        version: str,
+        generations: Sequence[int],
+        state: RepositorySurfaces,
+        approximate: bool = False,
     ) -> None:
         """The next version of a package, and the state that it belongs to. generations: 1, 2 or both. approximate: a
         branch stands for it."""
-        compared: dict[int, tuple[tuple[tuple[str, str], Event], ...]] = {}
+        compared: dict[int, tuple[tuple[tuple[str, str], ChangeEvent], ...]] = {}
         for generation in generations:
             key = package, generation
             versions = self._versions.setdefault(key, [])
@@ -55,7 +60,7 @@ class Lines:
         """Package and ROS generation to its line as it is stored."""
         found: dict[tuple[str, int], bytes] = {}
         for (package, generation), versions in self._versions.items():
-            events: dict[str, dict[str, tuple[Event, ...]]] = {}
+            events: dict[str, dict[str, tuple[ChangeEvent, ...]]] = {}
             for (side, name), told in sorted(self._events.get((package, generation), {}).items()):
                 events.setdefault(side, {})[name] = tuple(told)
             bases = _bases(package, self._before[package, generation])
@@ -64,26 +69,29 @@ class Lines:
         return found
 
 
-def _may_have_been(thing: tuple[str, str], event: Event) -> bool:
+def _may_have_been(thing: tuple[str, str], event: ChangeEvent) -> bool:
     """Whether a name of C++ seems new because the header that has it was generated before, or is not known well."""
     return thing[0] == "c++" and all(told.kind == "added" and told.sure < 1 for told in event.told)
 
 
-def _side(change: Change) -> str:
+def _side(change: VersionChange) -> str:
     if change.what == "header":
         return "header"
     return change.side if change.side in ("c++", "python") else change.what
 
 
-def _events(package: str, before: State, after: State) -> Iterator[tuple[tuple[str, str], Event]]:
+def _events(
+    package: str, before: RepositorySurfaces, after: RepositorySurfaces
+) -> Iterator[tuple[tuple[str, str], ChangeEvent]]:
     """What changed of a package, by side and name. The places are filled in later."""
-    found: dict[tuple[str, str], list[Told]] = {}
+    found: dict[tuple[str, str], list[ComparedThing]] = {}
     for change in compare(before.surfaces[package], after.surfaces[package], before, after):
         if change.side == "message" or change.what in _UNTOLD:
             continue
         name = change.name.partition("(")[0] if change.what == "parameter" else change.name
         kept = change.kind in ("deprecated", "value") or (change.kind == "default" and change.side != "c++")
-        told = Told(change.kind, change.what, change.aspects, brief(change.now) if kept else "", change.instead,
+        told = ComparedThing(change.kind, change.what, change.aspects, brief(change.now) if kept else "",
+                    change.instead,
                     change.moved_to, change.breaks, change.sure)  # fmt: skip
         each = found.setdefault((_side(change), name), [])
         if told not in each:
@@ -92,10 +100,10 @@ def _events(package: str, before: State, after: State) -> Iterator[tuple[tuple[s
         had, has = _form(package, side, name, before), _form(package, side, name, after)
         if side == "c++" and had is not None and had == has and all(told.kind == "added" for told in each):
             continue  # another header declares it too
-        yield (side, name), Event(0, tuple(each), had, has)
+        yield (side, name), ChangeEvent(0, tuple(each), had, has)
 
 
-def _form(package: str, side: str, name: str, state: State) -> Form | None:
+def _form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form | None:
     if side == "c++":
         entities = [place.entity for place in state.cpp.get(name, ()) if place.entity.access != "private"]
         if not entities:
@@ -124,7 +132,7 @@ def _overload(one: Entity) -> Overload:
     return Overload(required, most, tuple(p.type for p in parameters), kept)
 
 
-def _bases(package: str, state: State) -> dict[str, tuple[str, ...]]:
+def _bases(package: str, state: RepositorySurfaces) -> dict[str, tuple[str, ...]]:
     found = {}
     for name, places in state.cpp.items():
         for place in places:

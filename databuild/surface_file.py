@@ -22,8 +22,8 @@ from ..impact.facts.python.surface import Bound
 from ..impact.facts.surface import Entity, HeaderSurface
 from ..impact.targets.surface import includes as surface_includes
 from ..impact.targets.surface.changes import PARAMETER, Line, unpack
-from ..impact.targets.surface.includes import Include, Included, Row
-from ..impact.targets.surface.store import About, History, Stored
+from ..impact.targets.surface.includes import Include, Included, IncludesRow
+from ..impact.targets.surface.store import About, Stored, SurfaceHistory
 
 if TYPE_CHECKING:
     from ..impact.targets.surface.surface import Surface
@@ -201,7 +201,7 @@ def write(file: Path, packages: Packages, distros: Sequence[str] = (), date: str
     versions = {
         (name, version)
         for (name, _), packed in packages.items()
-        for version in History(name, packed.data, packed.includes).versions
+        for version in SurfaceHistory(name, packed.data, packed.includes).versions
     }
     about = About(len({name for name, _ in packages}), len(versions), " ".join(distros), date)
     with tempfile.TemporaryDirectory() as folder:
@@ -238,7 +238,7 @@ def _elsewhere(packages: Packages) -> dict[str, str]:
                 lost.setdefault(name, set()).add(package)
     found: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
-        for name in History(package, packed.data, packed.includes).names().keys() & lost.keys():
+        for name in SurfaceHistory(package, packed.data, packed.includes).names().keys() & lost.keys():
             if lost[name] != {package}:
                 found.setdefault(name, set()).add(package)
     return {name: " ".join(sorted(those)) for name, those in found.items()}
@@ -312,7 +312,7 @@ class Including:
         """All versions as they are stored."""
         count = len(self._versions)
         headers = {
-            path: tuple(Row(tuple(spans_of(places, count)), *state) for state, places in states.items())
+            path: tuple(IncludesRow(tuple(spans_of(places, count)), *state) for state, places in states.items())
             for path, states in sorted(self._places.items())
         }
         whole = Included(

@@ -19,7 +19,7 @@ from ..edges.files import check_writable_path
 from ..impact.targets.distro.distro import DistroTarget, TargetError
 from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import Snapshot, default
-from ..impact.targets.surface.store import History
+from ..impact.targets.surface.store import SurfaceHistory
 from ..impact.targets.version import parts
 from .jobs import Job, Result, Wanted, run
 from .surface.clones import Clone, Clones, Release, Version
@@ -29,7 +29,7 @@ Versions = Literal["newest", "all"]
 """Which versions are read: those that distros have, or all that they ever had."""
 
 
-class Built(NamedTuple):
+class BuiltSurfaces(NamedTuple):
     """What was written. missing: packages asked for by a distro that no clone has, with the distro. approximate:
     packages with versions that a branch stands for."""
 
@@ -157,7 +157,7 @@ def build(
     *,
     versions: Versions = "newest",
     dask: str | None = None,
-) -> Built:
+) -> BuiltSurfaces:
     """Reads what is asked for, as plan() has it, and writes it. jobs: processes, all cores when None. progress: called
     with (clone, done, total). dask: address of a scheduler whose workers do the jobs instead. What was done stays in
     `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises TargetError,
@@ -197,9 +197,9 @@ def build(
             failed += why.split("\n") if why else []
     about = write(output, written, distros, default().date)
     work.unlink()
-    histories = (History(package, packed.data, packed.includes) for (package, _), packed in written.items())
+    histories = (SurfaceHistory(package, packed.data, packed.includes) for (package, _), packed in written.items())
     approximate = {history.package for history in histories if history.approximate}
-    return Built(about.packages, about.versions, missing, len(approximate), tuple(failed))
+    return BuiltSurfaces(about.packages, about.versions, missing, len(approximate), tuple(failed))
 
 
 def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:

@@ -13,8 +13,8 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.snapshot import SCHEMA, SnapshotInfo
 from .keys import RuleEvent
-from .manifests import Declared
-from .releases import History
+from .manifests import DeclaredVersion
+from .releases import DistroHistory
 
 FILES = ("distros.sqlite.zst", "snapshot.json")
 """What a data folder gets."""
@@ -37,16 +37,16 @@ class Sync(NamedTuple):
     cut: int
 
 
-class Gathered(NamedTuple):
+class GatheredData(NamedTuple):
     """Everything that goes into the database. date: newest day of the data. sources: repository → commit."""
 
     date: str
     sources: dict[str, str]
     distros: Sequence[DistroRow]
-    histories: Mapping[str, History]
+    histories: Mapping[str, DistroHistory]
     syncs: Sequence[Sync]
     rules: Sequence[RuleEvent]
-    manifests: Sequence[Declared]
+    manifests: Sequence[DeclaredVersion]
 
 
 class _Ids:
@@ -62,7 +62,7 @@ class _Ids:
         return [(number, text) for text, number in self.of.items()]
 
 
-def database(gathered: Gathered) -> bytes:
+def database(gathered: GatheredData) -> bytes:
     """The SQLite database as bytes; the same facts give the same bytes with the same SQLite."""
     handle, name = tempfile.mkstemp(suffix=".sqlite")
     os.close(handle)
@@ -81,7 +81,7 @@ def database(gathered: Gathered) -> bytes:
         os.unlink(name)
 
 
-def _fill(connection: sqlite3.Connection, gathered: Gathered) -> None:
+def _fill(connection: sqlite3.Connection, gathered: GatheredData) -> None:
     many = connection.executemany
     many("INSERT INTO meta VALUES(?, ?)", [("date", gathered.date), *sorted(gathered.sources.items())])
     distros = {row.name: number for number, row in enumerate(sorted(gathered.distros), 1)}
@@ -114,7 +114,7 @@ def _fill(connection: sqlite3.Connection, gathered: Gathered) -> None:
 def _fill_history(
     connection: sqlite3.Connection,
     distro: int,
-    history: History,
+    history: DistroHistory,
     ids: tuple[_Ids, _Ids, _Ids, _Ids],
     homes: set[tuple[int, int, int]],
 ) -> None:

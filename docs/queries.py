@@ -14,22 +14,23 @@ from rosimpact.impact.facts.manifest import Manifest
 from rosimpact.impact.facts.setup import SetupFile
 from rosimpact.impact.model.cmake.build import Build
 from rosimpact.impact.model.cpp.lost_headers import LostHeaders
-from rosimpact.impact.model.package import Digest
+from rosimpact.impact.model.package import LinkedPackage
 from rosimpact.impact.model.python.programs import ScriptSetup
 from rosimpact.impact.model.undeclared_parameters import UndeclaredParameter
-from rosimpact.impact.model.view import View
+from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import Diagnostic
 
 START = (
-    *(View, Package, Digest, Manifest, Build, SetupFile, Workspace, Diagnostic),
+    *(TargetView, Package, LinkedPackage, Manifest, Build, SetupFile, Workspace, Diagnostic),
     *(LostHeaders, ScriptSetup, UndeclaredParameter),
 )
 STEPS = 2
 HEAD = """\
 # What a rule can ask
 
-A rule gets a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Diagnostic`s.
+A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`view.target`) sees it, and yields
+`Diagnostic`s.
 
 | to know | ask |
 |---|---|

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rosimpact.impact.model.launch.result import At, Launched, Remap, Setting, Started
+from rosimpact.impact.model.launch.result import Launched, LaunchParameter, Remap, ShareLine, Started
 from rosimpact.impact.model.launch.text import known
 
-_HERE = At("", "the command line", 0)
+_HERE = ShareLine("", "the command line", 0)
 
 
 def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Launched:
@@ -15,7 +15,7 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
     `__name:=name` and `__ns:=namespace` among them, which the program does not see."""
     name, namespace = "", "/"
     remaps: list[Remap] = []
-    private: list[Setting] = []
+    private: list[LaunchParameter] = []
     words: list[str] = []
     for argument in arguments:
         old, assigns, new = argument.partition(":=")
@@ -26,7 +26,7 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
         elif old == "__ns":
             namespace = f"/{new.strip('/')}"
         elif old.startswith("_") and not old.startswith("__"):
-            private.append(Setting(old[1:], new, known(new), _HERE))
+            private.append(LaunchParameter(old[1:], new, known(new), _HERE))
         elif not old.startswith("__"):
             remaps.append(Remap(known(old), known(new), _HERE))
     started = Started(

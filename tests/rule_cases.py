@@ -14,7 +14,7 @@ from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.rules.rule import Finding, all_rules
-from rosimpact.impact.tree.paths import IGNORE_MARKERS, Entry, PathProblem, Walked, blob_id, inside
+from rosimpact.impact.tree.paths import IGNORE_MARKERS, PathProblem, TreeEntry, Walked, blob_id, inside
 
 HERE = Path(__file__).parent / "rules"
 Files = Mapping[str, str]
@@ -197,7 +197,7 @@ class MemoryTree(Walked):
         self.problems: list[PathProblem] = []
         self.skipped: list[PathProblem] = []
         self.aliases: dict[str, str] = {}
-        self._entries: list[Entry] | None = None
+        self._entries: list[TreeEntry] | None = None
         self._data = {path: text.encode() for path, text in files.items()}
         self._folders = {""} | {path[:at] for path in files for at, letter in enumerate(path) if letter == "/"}
 
@@ -205,13 +205,13 @@ class MemoryTree(Walked):
     def repositories(self) -> dict[str, str]:
         return {}
 
-    def _walk(self, found: list[Entry]) -> None:
+    def _walk(self, found: list[TreeEntry]) -> None:
         markers = sorted(path for path in self._data if path.rpartition("/")[2] in IGNORE_MARKERS)
         ignored = {path.rpartition("/")[0]: path.rpartition("/")[2] for path in reversed(markers)}
         self.skipped += [PathProblem(folder or ".", f"holds {marker}") for folder, marker in ignored.items()]
         for path, data in self._data.items():
             if not any(not folder or path.startswith(f"{folder}/") for folder in ignored):
-                found.append(Entry(path, len(data)))
+                found.append(TreeEntry(path, len(data)))
 
     def read(self, path: str, limit: int = 0) -> bytes:
         data = self._data.get(inside(path) or "")

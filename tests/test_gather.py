@@ -14,7 +14,7 @@ from rosimpact.impact.facts import extract as gather_module
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.facts.usage import Table
+from rosimpact.impact.facts.usage import UsageTable
 from rosimpact.impact.tree import GitTree, PathProblem, WorkingTree
 
 LAUNCH = "<launch><node pkg='p' exec='n'/></launch>"
@@ -516,7 +516,7 @@ def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
     with Store(tmp_path / "cache") as store:
         gathered = gather(WorkingTree(tmp_path / "ws"), store)
         for words in (["changed"], ["other"], ["changed"]):
-            (found,) = gathered.look(["a.cpp"], "searched_cpp", Table({}, words)).values()
+            (found,) = gathered.look(["a.cpp"], "searched_cpp", UsageTable({}, words)).values()
             assert [word.text for word in found.words] == words
     assert [table.words for table in taken] == [{"changed"}, {"other"}]
 

@@ -15,7 +15,7 @@ from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options, open_workspace
 from rosimpact.impact.model import tracked_names as watch
-from rosimpact.impact.model.view import View
+from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import all_rules
 
@@ -250,7 +250,7 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeyp
             digests = [package.digest for package in opened.workspace]
             unseen: object = _Unseen()
             bare = Workspace(digests, unseen, opened.workspace.ros, unseen, unseen)  # type: ignore[arg-type]
-            again = View(bare, view.target, view.providers, view.config)
+            again = TargetView(bare, view.target, view.providers, view.config)
             assert [list(rule.run(again)) for rule in rules] == whole
 
 

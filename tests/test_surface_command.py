@@ -85,15 +85,15 @@ def test_a_line_fits_eighty_columns(repos, tmp_path):
     from rosimpact.databuild.surface.clones import Clone
     from rosimpact.impact.facts.store import Store
     from rosimpact.impact.report.style import PLAIN
-    from rosimpact.impact.report.surface import Difference, Source, diff_text, show_text
-    from rosimpact.impact.targets.surface.compare import State, compare_states
+    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, diff_text, show_text
+    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare_states
 
     clone = Clone(repos / "ros2+rclcpp")
     with Store(tmp_path / "other") as store:
-        old, new = (State(clone.surfaces(tag, store, 1)) for tag in ("16.0.0", "28.1.0"))
-    source = Source("16.0.0", "16.0.0", "ros2/rclcpp", "16.0.0")
+        old, new = (RepositorySurfaces(clone.surfaces(tag, store, 1)) for tag in ("16.0.0", "28.1.0"))
+    source = VersionSource("16.0.0", "16.0.0", "ros2/rclcpp", "16.0.0")
     style = PLAIN._replace(width=80)
-    told = diff_text(Difference(source, source, compare_states(old, new)), style, True)
+    told = diff_text(SurfaceDifference(source, source, compare_states(old, new)), style, True)
     shown = show_text(old.surfaces["rclcpp"], source, style, True)
     assert [line for line in (told + shown).splitlines() if len(line) > 80] == []
     assert "and_one_more" in told and "and_one_more" in shown

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.analysis.why import Answer, Offer, answers, as_text
+from rosimpact.impact.analysis.why import NameOffer, WhyAnswer, answers, as_text
 
 EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"
 
@@ -62,11 +62,11 @@ def test_uses_and_whether_they_are_safe():
     assert any("porter_bringup" in answer.undeclared for answer in undeclared)
 
 
-def answer(what: str, *offers: Offer, used=(), undeclared=(), changes=(), target="jazzy") -> Answer:
-    return Answer(target, what, offers, used, undeclared, changes)
+def answer(what: str, *offers: NameOffer, used=(), undeclared=(), changes=(), target="jazzy") -> WhyAnswer:
+    return WhyAnswer(target, what, offers, used, undeclared, changes)
 
 
-PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
+PACKAGE = NameOffer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
 
 
 @pytest.mark.parametrize(

@@ -17,9 +17,9 @@ from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
-from ..polite import Answer, Client, Refused, service_address
+from ..polite import Client, Refused, ServiceAnswer, service_address
 from ..report import CorpusError, Report
-from ..store import Asked, Gathered, Page, digest_of
+from ..store import AskedReport, GatheredReport, Page, digest_of
 from .in_order import Part, read_in_order
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class GitHub:
         core: Any = getattr(found, "resources", found)  # `resources` came with PyGithub 2.7
         return Quota(core.core.remaining, core.core.limit)
 
-    def gathered(self, raw: dict[str, Any], *, etag: str = "", asked: str = "") -> Gathered:
+    def gathered(self, raw: dict[str, Any], *, etag: str = "", asked: str = "") -> GatheredReport:
         """What one object of an answer holds. Raises CorpusError when it is no issue."""
         from github.Issue import Issue
 
@@ -111,7 +111,7 @@ class GitHub:
                 "check that --api leads to a GitHub server"
             ) from None
 
-    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """Asks for reports one by one. known: (id, ETag or nothing). What has not changed costs no quota."""
         for id, etag in known:
             found = _ID.match(id)
@@ -122,11 +122,11 @@ class GitHub:
                 url, headers=self.headers(etag), lane="core", accept=(301, 304, 404, 410, 451)
             )
             if answer.status == 304:
-                yield Asked(id, "same")
+                yield AskedReport(id, "same")
             elif answer.status == 200 and isinstance(raw, dict):
-                yield Asked(id, "here", self.gathered(raw, etag=answer.headers.get("etag", ""), asked=id))
+                yield AskedReport(id, "here", self.gathered(raw, etag=answer.headers.get("etag", ""), asked=id))
             else:
-                yield Asked(id, "gone")
+                yield AskedReport(id, "gone")
 
 
 class Listed:
@@ -159,7 +159,7 @@ class Listed:
             self._server.client.service,
         )
         for step in steps:
-            answer: Answer = step.part.about
+            answer: ServiceAnswer = step.part.about
             if answer.status == 304:
                 yield Page([], {"since": start, "etag": etag}, finished=True, done=done, of=total)
                 return
@@ -209,7 +209,7 @@ class Listed:
             )
         return url
 
-    def _reports(self, rows: list[dict[str, Any]]) -> Iterator[Gathered]:
+    def _reports(self, rows: list[dict[str, Any]]) -> Iterator[GatheredReport]:
         for row in rows:
             kind = "pull" if row.get("pull_request") else "issue"
             if kind not in self._kinds or (self._since and str(row.get("created_at") or "")[:10] < self._since):
@@ -280,7 +280,7 @@ class Searched:
         raise CorpusError(f"{client.service}: the search runs out of time again and again; narrow it")
 
 
-def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Gathered:
+def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> GatheredReport:
     place = _PAGE.match(issue.html_url or issue.url or "")
     if place is None:
         raise CorpusError(f"{issue.html_url}: is no address of an issue; check that --api leads to a GitHub server")
@@ -297,10 +297,10 @@ def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Gathe
         tags=tuple(label.name for label in issue.labels),
         author=(raw.get("user") or {}).get("login") or "",
     )
-    return Gathered(report, kept, digest_of(kept), etag, asked, "github")
+    return GatheredReport(report, kept, digest_of(kept), etag, asked, "github")
 
 
-def _is_over(moment: str, answer: Answer) -> bool:
+def _is_over(moment: str, answer: ServiceAnswer) -> bool:
     """Whether a second (`2024-01-31T10:00:00Z`) has passed by the clock of who answered; so where there is no clock."""
     try:
         now = parsedate_to_datetime(answer.headers.get("date", ""))

@@ -28,7 +28,7 @@ from ...edges.files import open_regular, read_file
 from ...edges.limits import limits
 from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
-from ..store import Asked, Gathered, Page, digest_of
+from ..store import AskedReport, GatheredReport, Page, digest_of
 from .markup import markdown, soup
 from .person import public_name
 
@@ -115,7 +115,7 @@ class Archive:
             )
         yield self._page(part, copies, count, count)._replace(state={}, finished=True)
 
-    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """Asks for `ros-answers:10010` and the like. known: (id, anything)."""
         wanted = {_number_of(id): id for id, _ in known}
         if self._place.is_dir():
@@ -127,7 +127,7 @@ class Archive:
             if number in wanted:
                 yield _asked_for(wanted.pop(number), read(), f"{number}.md")
         for id in wanted.values():
-            yield Asked(id, "gone")
+            yield AskedReport(id, "gone")
 
     def _page(self, part: list[tuple[int, bytes]], copies: Iterable[tuple[str, str]], count: int, total: int | None):
         reports, pairs = [], list(copies)
@@ -194,7 +194,7 @@ class ArchivedFiles:
         self._address = address.rstrip("/")
         self._there = False
 
-    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """As Archive.ask()."""
         for id, _ in known:
             number = str(_number_of(id))
@@ -207,7 +207,7 @@ class ArchivedFiles:
                         f"{self._client.service}: is not at {self._address} any more; clone {ARCHIVE} and give it with "
                         "--archive DIR"
                     )
-            yield Asked(id, "gone") if data is None else _asked_for(id, data, f"{number}.md")
+            yield AskedReport(id, "gone") if data is None else _asked_for(id, data, f"{number}.md")
 
     def _file(self, number: str) -> bytes | None:
         answer = self._client.get(f"{self._address}/{_FOLDER}/{number}.md", accept=(404, 410))
@@ -319,12 +319,12 @@ class Askbot:
             number += 1
 
 
-def _asked_for(id: str, data: bytes, name: str) -> Asked:
+def _asked_for(id: str, data: bytes, name: str) -> AskedReport:
     found = parse_archived(data, name)
-    return Asked(id, "here", found[0]) if found else Asked(id, "gone")
+    return AskedReport(id, "here", found[0]) if found else AskedReport(id, "gone")
 
 
-def parse_archived(data: bytes, name: str) -> tuple[Gathered, str] | None:
+def parse_archived(data: bytes, name: str) -> tuple[GatheredReport, str] | None:
     """(the question, the id of its migrated copy or nothing) of a file of the archive; None for one of Gazebo Answers.
     Raises CorpusError, naming the file, when it is no question."""
     found = _HEAD.match(data.decode("utf-8-sig", "replace"))
@@ -362,10 +362,10 @@ def parse_archived(data: bytes, name: str) -> tuple[Gathered, str] | None:
     kept["comments"] = [_post(comment) for comment in head.get("comments") or () if isinstance(comment, dict)]
     kept["body_markdown"] = body
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
-    return Gathered(report, raw, digest_of(data), origin="archive"), f"robotics-se:{copy[1]}" if copy else ""
+    return GatheredReport(report, raw, digest_of(data), origin="archive"), f"robotics-se:{copy[1]}" if copy else ""
 
 
-def parse_item(item: dict[str, Any]) -> Gathered:
+def parse_item(item: dict[str, Any]) -> GatheredReport:
     """A question of the JSON API. Raises CorpusError when it is none."""
     try:
         number = int(item["id"])
@@ -396,10 +396,10 @@ def parse_item(item: dict[str, Any]) -> Gathered:
         licence=LICENCE,
     )
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
-    return Gathered(report, raw, digest_of(msgspec.json.encode(report)), origin="askbot")
+    return GatheredReport(report, raw, digest_of(msgspec.json.encode(report)), origin="askbot")
 
 
-def parse_page(html: str) -> Gathered | None:
+def parse_page(html: str) -> GatheredReport | None:
     """The question of a saved page, of the theme that answers.ros.org had from 2018 on or of a newer Askbot; None where
     it holds none, or is not the first of a question's pages."""
     page = soup(html)
@@ -439,7 +439,7 @@ def parse_page(html: str) -> Gathered | None:
         "closed": closed,
     }
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
-    return Gathered(report, raw, origin="pages")
+    return GatheredReport(report, raw, origin="pages")
 
 
 def fetch_archive(client: Client, file: Path, address: str = TARBALL) -> Path:

@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
-from ..store import Asked, Gathered, Page, digest_of
+from ..store import AskedReport, GatheredReport, Page, digest_of
 from .in_order import Part, read_in_order
 from .markup import markdown, soup
 from .person import public_name
@@ -103,7 +103,7 @@ class StackExchange:
         for lane in ("questions", "ids"):
             self.client.hold(lane, (tomorrow - now).total_seconds(), "the quota of the day is used up")
 
-    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """Asks for `robotics-se:98659` and the like, a hundred a request. known: (id, anything)."""
         ids = {id.rpartition(":")[2]: id for id, _ in known}
         wanted = list(ids)
@@ -115,9 +115,9 @@ class StackExchange:
             there = {str(item.get("question_id")): item for item in found["items"]}
             for number in part:
                 if number in there:
-                    yield Asked(ids[number], "here", gathered(there[number]))
+                    yield AskedReport(ids[number], "here", gathered(there[number]))
                 else:
-                    yield Asked(ids[number], "gone")
+                    yield AskedReport(ids[number], "gone")
 
 
 def _is_wrapper(found: object) -> bool:
@@ -183,7 +183,7 @@ def _posted(item: dict[str, Any]) -> int:
         raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
 
 
-def gathered(item: dict[str, Any]) -> Gathered:
+def gathered(item: dict[str, Any]) -> GatheredReport:
     """A question of the API. Raises CorpusError when it is none."""
     try:
         number = int(item["question_id"])
@@ -213,7 +213,7 @@ def gathered(item: dict[str, Any]) -> Gathered:
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
     # views and votes change all the time, and change no report
     steady = {name: kept[name] for name in ("title", "body", "tags", "owner", "content_license") if name in kept}
-    return Gathered(report, raw, digest_of(json.dumps(steady, sort_keys=True).encode()), origin="stack-exchange")
+    return GatheredReport(report, raw, digest_of(json.dumps(steady, sort_keys=True).encode()), origin="stack-exchange")
 
 
 def original_of(body: str) -> Original:

@@ -23,7 +23,14 @@ from ...impact.model.cmake.installed import HEADER_NAME, copied_files
 from ...impact.model.flow.started import launch_kind
 from ...impact.model.package import role_of_folder
 from ...impact.targets.surface.fields import snake
-from ...impact.targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
+from ...impact.targets.surface.surface import (
+    BuildSurface,
+    ExportedTarget,
+    Header,
+    InstalledLaunchFile,
+    InstalledProgram,
+    Plugin,
+)
 
 if TYPE_CHECKING:
     from ...impact.model.workspace import Package, Workspace
@@ -298,7 +305,7 @@ class _Surface:
 
     # -- programs, plugins, launch files
 
-    def programs(self) -> Iterator[Program]:
+    def programs(self) -> Iterator[InstalledProgram]:
         package = self.package
         places = ("bin", f"lib/{package.name}", f"lib/{self.name}")
         components = {export.executable for export in self.exports if export.how == "component" and export.executable}
@@ -313,18 +320,18 @@ class _Surface:
                 target = self.targets.get(item)
                 if install.kind == "targets" and target is not None and target.kind == "executable":
                     how = "component" if item in components else "binary"
-                    yield Program(target.output_name or item, destination, how, sure and not target.conditions)
+                    yield InstalledProgram(target.output_name or item, destination, how, sure and not target.conditions)
                 elif install.kind in ("programs", "files") and "$" not in item:
                     name = install.rename or posixpath.basename(item)
                     if install.kind == "programs" or item.endswith(".py"):
-                        yield Program(name, destination, "script", sure)
+                        yield InstalledProgram(name, destination, "script", sure)
             if install.kind == "directory":
                 for _, installed in self.copied(install, destination):
-                    yield Program(posixpath.basename(installed), destination, "script", False)
+                    yield InstalledProgram(posixpath.basename(installed), destination, "script", False)
         if package.build_type == "ament_python" or any(i.kind == "python" for i in self.installs):
             yield from self.entry_points()
 
-    def entry_points(self) -> Iterator[Program]:
+    def entry_points(self) -> Iterator[InstalledProgram]:
         files = {path: file for path, file in self.package.digest.setup}
         folders = (folder for f in files.values() for command, folder, _ in f.script_folders if command == "install")
         place = next(folders, "bin").removeprefix("$base/")
@@ -333,9 +340,9 @@ class _Surface:
             if file is None:
                 continue
             for entry, _, _ in file.entry_points:
-                yield Program(entry, place, "entry point")
+                yield InstalledProgram(entry, place, "entry point")
             for script in file.scripts:
-                yield Program(posixpath.basename(script), place, "script")
+                yield InstalledProgram(posixpath.basename(script), place, "script")
             for clause in file.unresolved:
                 if clause.startswith(("entry_points", "scripts")):
                     self.note("programs", clause)
@@ -350,7 +357,7 @@ class _Surface:
             if export.how == "component" and "$" not in export.item:
                 yield Plugin(export.item, export.item, "rclcpp_components", not export.conditions)
 
-    def launches(self) -> Iterator[LaunchFile]:
+    def launches(self) -> Iterator[InstalledLaunchFile]:
         """Installed launch files, by the path below share/<package>."""
         found: dict[str, str] = {}
         share = (f"share/{self.package.name}", f"share/{self.name}")
@@ -376,7 +383,7 @@ class _Surface:
             kind = launch_kind(source)
             # A folder of Python holds more than launch files.
             if kind and ("launch" in path) and not path.endswith("__init__.py"):
-                yield LaunchFile(path, tuple(self.arguments(f"{self.prefix}{source}", kind)))
+                yield InstalledLaunchFile(path, tuple(self.arguments(f"{self.prefix}{source}", kind)))
 
     def arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
         for facts in self.workspace.gathered.look((path,), f"flow_{kind}").values():

@@ -12,7 +12,7 @@ from ...edges.console import UserError
 from ...impact.targets.distro.distro import DistroTarget, TargetError
 from ...impact.targets.distro.known import known_distros
 from ...impact.targets.snapshot import Snapshot, default
-from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.surface import Surface
 from ...impact.targets.version import parts
 from ...impact.tree import GitTree, TreeError
@@ -273,13 +273,15 @@ class Clones:
         """The newest distro that has a package. Raises VersionError when none has it."""
         return newest_with(package, self._data)
 
-    def surface(self, package: str, asked: str, store: Store, jobs: int | None = None) -> tuple[Version, State]:
+    def surface(
+        self, package: str, asked: str, store: Store, jobs: int | None = None
+    ) -> tuple[Version, RepositorySurfaces]:
         """The state that stands for a version of a package, see find(). Raises VersionError where there is none."""
         tried = []
         for version in self.find(package, asked):
             surfaces = version.clone.surfaces(version.revision, store, jobs)
             if package in surfaces:
-                return version, State(surfaces)
+                return version, RepositorySurfaces(surfaces)
             tried.append(version.revision.removeprefix("refs/").partition("/")[2])
         clones = ", ".join(clone.name for clone in self.of(package))
         what = f"{', '.join(tried)} in {clones} does not have it" if tried else f"{clones} has no tag for it"

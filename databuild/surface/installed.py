@@ -22,22 +22,22 @@ from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.launch import flow as flow_launch
 from ...impact.facts.python import surface as surface_python
 from ...impact.facts.surface import HeaderSurface
-from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.fields import ROS1_SUFFIXES
 from ...impact.targets.surface.includes import compiled
 from ...impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,
     Header,
-    LaunchFile,
-    Module,
-    Program,
+    InstalledLaunchFile,
+    InstalledModule,
+    InstalledProgram,
     PythonSurface,
     Surface,
 )
 from .build import launch_arguments, launch_kind
 from .clones import VersionError
-from .unpacked_deb import DebError, Member, members
+from .unpacked_deb import DebError, DebFile, members
 
 _DPKG = Path("/var/lib/dpkg/info")
 _START = 4
@@ -81,7 +81,7 @@ def is_installed(asked: str) -> bool:
     return os.sep in asked and os.path.exists(asked)
 
 
-def surface_at(package: str, asked: str) -> tuple[Surface, State]:
+def surface_at(package: str, asked: str) -> tuple[Surface, RepositorySurfaces]:
     """What a package offers that is installed in a prefix, or in a .deb or a folder of them. Raises VersionError."""
     place = Path(asked)
     try:
@@ -95,7 +95,7 @@ def surface_at(package: str, asked: str) -> tuple[Surface, State]:
         names = f"; it has {', '.join(known[:8])}" if known else ""
         raise VersionError(f"{asked}: there is no `{package}` (no share/{package}/package.xml){names}")
     surface = surface_of(package, parts)
-    return surface, State({package: surface})
+    return surface, RepositorySurfaces({package: surface})
 
 
 # -- where files are ---------------------------------------------------------------------------------------------------
@@ -147,7 +147,7 @@ def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
     return found
 
 
-def _content(files: Mapping[str, Member], path: str) -> bytes:
+def _content(files: Mapping[str, DebFile], path: str) -> bytes:
     data = files[path].data
     if len(data) > limits().text:
         raise too_large(path, limits().text)
@@ -322,8 +322,8 @@ def _cmake(package: str, parts: Sequence[Part]) -> _CMake:
     return found
 
 
-def _python(package: str, parts: Sequence[Part]) -> tuple[list[Module], set[str]]:
-    modules: dict[str, Module] = {}
+def _python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule], set[str]]:
+    modules: dict[str, InstalledModule] = {}
     unknown: set[str] = set()
     for part in parts:
         alone = not part.convention and part.packages == {package}
@@ -339,26 +339,26 @@ def _python(package: str, parts: Sequence[Part]) -> tuple[list[Module], set[str]
             elif inside.endswith(".py"):
                 init = inside.endswith("/__init__.py")
                 name = dotted.removesuffix(".__init__.py").removesuffix(".py")
-                modules[name] = Module(name, path, init, surface_python.extract(part.read(path)))
+                modules[name] = InstalledModule(name, path, init, surface_python.extract(part.read(path)))
     return [modules[name] for name in sorted(modules)], unknown
 
 
-def _programs(package: str, parts: Sequence[Part]) -> Iterator[Program]:
+def _programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledProgram]:
     found = {}
     for part in parts:
         for path in part.paths:
             folder, _, name = path.rpartition("/")
             if folder == f"lib/{package}" and "." not in name.removesuffix(".py") and part.executable(path):
                 how = "binary" if part.start(path).startswith(b"\x7fELF") else "script"
-                found[name] = Program(name, folder, how)
+                found[name] = InstalledProgram(name, folder, how)
     return iter(sorted(found.values(), key=lambda program: program.name))
 
 
-def _launches(package: str, parts: Sequence[Part]) -> Iterator[LaunchFile]:
+def _launches(package: str, parts: Sequence[Part]) -> Iterator[InstalledLaunchFile]:
     share = f"share/{package}/"
     for part in parts:
         for path in sorted(part.paths):
             kind = launch_kind(path) if path.startswith(share) and "launch" in path else None
             if kind and not path.endswith("__init__.py"):
                 actions = flow_launch.extract(part.read(path), kind).actions
-                yield LaunchFile(path.removeprefix(share), tuple(launch_arguments(actions)))
+                yield InstalledLaunchFile(path.removeprefix(share), tuple(launch_arguments(actions)))

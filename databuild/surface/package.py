@@ -26,7 +26,7 @@ from . import build as surface_build
 from . import python as surface_python
 
 if TYPE_CHECKING:
-    from ...impact.facts.extract import Gathered
+    from ...impact.facts.extract import ExtractedFacts
     from ...impact.facts.store import Store
     from ...impact.model.workspace import Package
     from ...impact.tree import Tree
@@ -102,7 +102,9 @@ def _declaring(package: Package) -> Iterator[tuple[str, str]]:
             yield from ((path, kind) for path in made.files if "$" not in path)
 
 
-def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[str, str | None], ...], tuple[str, ...]]:
+def _parameters(
+    declared: ExtractedFacts, files: Iterable[str]
+) -> tuple[tuple[tuple[str, str | None], ...], tuple[str, ...]]:
     """The parameters that some files declare, each with the default that all of them give it, and what they mention."""
     found: dict[str, set[str | None]] = defaultdict(set)
     mentioned: set[str] = set()

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...impact.facts.kinds import kind_of as kind_by_name
 from ...impact.facts.python.surface import ModuleSurface
 from ...impact.facts.setup import SetupFile
-from ...impact.targets.surface.surface import Module, PythonSurface
+from ...impact.targets.surface.surface import InstalledModule, PythonSurface
 
 if TYPE_CHECKING:
     from ...impact.model.cmake.build import Install
     from ...impact.model.workspace import Package
 
 
-class Installed(NamedTuple):
+class InstalledModules(NamedTuple):
     """Which modules a package installs: path relative to the workspace by dotted name; the rest as in PythonSurface."""
 
     modules: dict[str, str]
@@ -45,7 +45,7 @@ def surface_of(package: Package, facts: Callable[[str], ModuleSurface | None]) -
         if surface is None:
             unknown.append(name)
         else:
-            modules.append(Module(name, path[start:], path.endswith("/__init__.py"), surface))
+            modules.append(InstalledModule(name, path[start:], path.endswith("/__init__.py"), surface))
     return PythonSurface(package.name, tuple(modules), tuple(dict.fromkeys(unknown)), found.unresolved)
 
 
@@ -56,12 +56,12 @@ _SITE = re.compile(r"(?:^|/)(?:site|dist)-packages(?:/(?P<inside>.*))?$|^\$\{PYT
 _TESTS = frozenset(("test", "tests"))
 
 
-def installed(package: Package) -> Installed:
+def installed(package: Package) -> InstalledModules:
     """Which modules a package installs, by its setup.py, ament_python_install_package() and install() rules."""
     finder = _Installed(package)
     finder.run()
     modules = {name: path for name, path in finder.modules.items() if all(p.isidentifier() for p in name.split("."))}
-    return Installed(modules, tuple(dict.fromkeys(finder.unknown)), tuple(dict.fromkeys(finder.unresolved)))
+    return InstalledModules(modules, tuple(dict.fromkeys(finder.unknown)), tuple(dict.fromkeys(finder.unresolved)))
 
 
 class _Installed:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...impact.facts.interface import Interface
 from ...impact.targets.distro.distro import DistroTarget
 from ...impact.targets.snapshot import Snapshot, default
-from ...impact.targets.surface.compare import State
+from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.store import Surfaces
 from .clones import VersionError, newest_with, release_of
 
@@ -58,7 +58,7 @@ class StoredVersions:
             )
         return StoredVersion(version, stored, stored in lines[ros].approximate or stored != version, ros)
 
-    def surface(self, package: str, asked: str) -> tuple[StoredVersion, State]:
+    def surface(self, package: str, asked: str) -> tuple[StoredVersion, RepositorySurfaces]:
         """What stands for a version of a package, with the packages that its repository released along with it. Raises
         VersionError, see find()."""
         found = self.find(package, asked)
@@ -68,7 +68,7 @@ class StoredVersions:
             surface = history.surface(found.stored) if history is not None else None
             if surface is not None:
                 surfaces[name] = surface
-        return found, State(surfaces)
+        return found, RepositorySurfaces(surfaces)
 
     def message(self, distro: str, name: str) -> Interface | None:
         """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a message, by `package/Name`; None where it has none, or

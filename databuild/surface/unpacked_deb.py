@@ -43,14 +43,14 @@ class _TooMuch(Exception):
     """An archive holds more than a limit; the text says which."""
 
 
-class Member(NamedTuple):
+class DebFile(NamedTuple):
     """A file of a package. executable: by its mode."""
 
     data: bytes
     executable: bool
 
 
-def members(path: Path) -> dict[str, Member]:
+def members(path: Path) -> dict[str, DebFile]:
     """The regular files of a package by their path from the root (`usr/include/a.h`); links within the package stand
     for what they lead to. Raises DebError, and OSError where it cannot be read."""
     descriptor = open_regular(path)
@@ -83,9 +83,9 @@ class _Header(tarfile.TarInfo):
         return found  # type: ignore[return-value]
 
 
-def _held(stream: Any) -> tuple[dict[str, Member], dict[str, str]]:
+def _held(stream: Any) -> tuple[dict[str, DebFile], dict[str, str]]:
     """The files of a tar archive, and its links with what they lead to."""
-    files: dict[str, Member] = {}
+    files: dict[str, DebFile] = {}
     links: dict[str, str] = {}
     left, count = limits().deb // 2, 0
     with tarfile.open(fileobj=stream, mode="r|", tarinfo=_Header, bufsize=_CHUNK) as archive:
@@ -104,7 +104,7 @@ def _held(stream: Any) -> tuple[dict[str, Member], dict[str, str]]:
                 if left < 0:
                     raise _TooMuch(f"files of more than {size_text(limits().deb // 2)}")
                 read = archive.extractfile(entry)
-                files[name] = Member(read.read() if read is not None else b"", bool(entry.mode & 0o111))
+                files[name] = DebFile(read.read() if read is not None else b"", bool(entry.mode & 0o111))
     return files, links
 
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from ...edges.console import unforeseen
 from ...edges.version import __version__
 from ..config import Config, PathSetting
-from ..facts.extract import Gathered
-from ..model.view import View
+from ..facts.extract import ExtractedFacts
+from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Cure, Diagnostic, Finding, Rule, all_rules
+from ..rules.rule import Diagnostic, Finding, FixAction, Rule, all_rules
 from ..targets.version import compare as compare_versions
 from ..tree import Tree
 from . import result_cache
@@ -31,10 +31,10 @@ from .findings import (
     suppress,
     verify_settings,
 )
-from .report import Checked, Coverage, Report, ReportedPackage, ReportedTarget, Sources, report_target
+from .report import Checked, Coverage, Report, ReportedPackage, ReportedTarget, SourceLines, report_target
 from .run_rules import Crashes, run_rules
 from .session import (
-    Opened,
+    OpenedWorkspace,
     Options,
     explain_nothing_analysed,
     make_reader,
@@ -42,7 +42,7 @@ from .session import (
 )
 
 if TYPE_CHECKING:
-    from ..model.install_space import Installed
+    from ..model.install_space import InstallSpace
     from ..targets.machine.shared_libraries import Shelf
     from .downstream import Impact
 
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 def check_opened(
     path: str | os.PathLike[str],
     options: Options,
-    opened: Opened,
+    opened: OpenedWorkspace,
     *,
     base_tree: Tree | None = None,
     started: float | None = None,
@@ -64,7 +64,7 @@ def check_opened(
     tree, store, gathered, workspace, targets, views, config, _, installed, shelves = opened
     chosen = select_rules(options, config)
     settings = _settings(rules, config)
-    sources = Sources(make_reader(tree))
+    sources = SourceLines(make_reader(tree))
     crashed: Crashes = {}
     reached: Impact | None = None
     notes: list[str] = []
@@ -74,7 +74,7 @@ def check_opened(
         if base_tree is None:
             base_tree, notes = bases.base_tree(tree, options.base)
         before = bases.open_base(base_tree, opened, jobs=options.jobs)
-        old = run_and_merge(before, chosen, settings, Sources(make_reader(base_tree)), crashed, jobs=options.jobs)
+        old = run_and_merge(before, chosen, settings, SourceLines(make_reader(base_tree)), crashed, jobs=options.jobs)
         now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
         found: Sequence[Finding] = mark_new(now.kept, old.kept)
         reached = _reached(workspace, before.workspace, crashed)
@@ -123,10 +123,10 @@ def check_opened(
 
 def _splits(
     parted: Sequence[tuple[Finding, Split]],
-    opened: Opened,
+    opened: OpenedWorkspace,
     rules: Mapping[str, Rule],
     settings: Sequence[PathSetting],
-    sources: Sources,
+    sources: SourceLines,
 ) -> list[Finding]:
     """Findings of unguarded-split, which rest on findings of other rules; new where all of those are."""
     from ..rules.api.unguarded_split import list_splits
@@ -179,10 +179,10 @@ def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, .
 
 
 def run_and_merge(
-    opened: Opened,
+    opened: OpenedWorkspace,
     rules: Mapping[str, Rule],
     settings: Sequence[PathSetting],
-    sources: Sources,
+    sources: SourceLines,
     crashed: Crashes,
     before: Workspace | None = None,
     jobs: int | None = None,
@@ -226,7 +226,7 @@ def format_targets(targets: Sequence[str]) -> str:
     return f" on {', '.join(targets)}" if targets else ""
 
 
-def is_right_on(cure: Cure, view: View) -> bool:
+def is_right_on(cure: FixAction, view: TargetView) -> bool:
     """Whether a cure is right on a target where the rule found nothing to cure.
 
     A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
@@ -241,7 +241,7 @@ def is_right_on(cure: Cure, view: View) -> bool:
     return False
 
 
-def _has_header(view: View, path: str) -> bool:
+def _has_header(view: TargetView, path: str) -> bool:
     target = view.target
     if view.is_standard(path) or view.workspace.provides_header(path):
         return True
@@ -258,7 +258,7 @@ def _has_header(view: View, path: str) -> bool:
 
 
 def coverage(
-    workspace: Workspace, gathered: Gathered, views: Sequence[View], installed: Installed | None = None
+    workspace: Workspace, gathered: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
 ) -> Coverage:
     """How much was read and resolved."""
     broken = {path for package in workspace for path, _, _ in package.digest.problems}

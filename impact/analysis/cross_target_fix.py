@@ -14,7 +14,7 @@ from ..targets.providers.version_macros import version_test
 from ..targets.version import at_least
 
 if TYPE_CHECKING:
-    from ..model.view import View
+    from ..model.view import TargetView
 
 
 _CMAKE = ("cmake", "command", "target", "variable")
@@ -38,7 +38,7 @@ class Split(NamedTuple):
 
 
 def add_evidence(
-    findings: Iterable[Finding], views: Sequence[View]
+    findings: Iterable[Finding], views: Sequence[TargetView]
 ) -> tuple[list[Finding], list[tuple[Finding, Split]]]:
     """The findings with how every target stands to the change that each rests on, and with the guarded form as help
     where the targets asked for need different spellings; and these alone."""
@@ -58,7 +58,7 @@ def add_evidence(
 
 
 def _joined(
-    evidence: Evidence, spoken_of: tuple[str, ...], views: Sequence[View]
+    evidence: Evidence, spoken_of: tuple[str, ...], views: Sequence[TargetView]
 ) -> tuple[Evidence | None, Split | None]:
     if not views:
         return None, None
@@ -66,7 +66,7 @@ def _joined(
     return seen, find_split(seen, spoken_of, views) if seen is not None else None
 
 
-def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
+def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[TargetView]) -> Split | None:
     """How the targets differ, when on some only the one and on others only the other spelling is there; else None.
 
     evidence: as seen_on() gives it. spoken_of: targets on which the name that is used is not there.
@@ -91,7 +91,7 @@ def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[Vie
     return Split(evidence, old, new, old_only, new_only, first, oldest, ros)
 
 
-def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None:
+def _used(evidence: Evidence, view: TargetView, spoken: frozenset[str]) -> bool | None:
     """Whether the spelling that is used is there."""
     if view.target.name in spoken:
         return False
@@ -102,7 +102,7 @@ def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None
     return None if here is None else here.holds == (evidence.change == "added")
 
 
-def _other(evidence: Evidence, view: View) -> bool | None:
+def _other(evidence: Evidence, view: TargetView) -> bool | None:
     """Whether the other spelling is there."""
     if evidence.other is not None:
         holds = holds_on(evidence.other, view.target, view.providers)
@@ -112,7 +112,7 @@ def _other(evidence: Evidence, view: View) -> bool | None:
 
 
 def _boundary(
-    evidence: Evidence, views: Sequence[View], old_only: Sequence[str], new_only: Sequence[str]
+    evidence: Evidence, views: Sequence[TargetView], old_only: Sequence[str], new_only: Sequence[str]
 ) -> tuple[str, str]:
     """The version that parts the targets, and the lowest one of them: a bound of the tables that does, else the lowest
     version of those that need the newer spelling, where all others are below it."""

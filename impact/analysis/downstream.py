@@ -9,16 +9,16 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from ..facts.extract import Gathered
+from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
 from ..logic.code_changes import ChangedFunction, changed_functions
-from ..logic.history import File
+from ..logic.history import PackageFile
 from ..logic.states import renamed_words
 from ..logic.two_states import Differing, differing, flow_facts, publishing
 from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
-from ..model.flow.reach import EVERYWHERE, Reach, Step
+from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
 from ..model.flow.select import kind_of
 from ..model.flow.workspace import flow_of
 from ..model.workspace import Workspace
@@ -120,7 +120,7 @@ class _Reading:
         builds = any(file.kind not in ("cpp", "python") for _, _, file in changed)
         return builds or bool(names ^ kept) or bool(self.functions) or any(map(self.redeclared, changed))
 
-    def redeclared(self, changed: tuple[str, File | None, File]) -> bool:
+    def redeclared(self, changed: tuple[str, PackageFile | None, PackageFile]) -> bool:
         """Whether a file's members, constants or exported classes differ."""
         path, before, _ = changed
         new = _facts(self.facts[1], path)
@@ -136,19 +136,19 @@ class _Reading:
         return flow_of(self.base).graph
 
     @cached_property
-    def reach(self) -> Reach:
-        return Reach(self.now)
+    def reach(self) -> DownstreamSearch:
+        return DownstreamSearch(self.now)
 
     @cached_property
-    def reach_before(self) -> Reach:
-        return Reach(self.before)
+    def reach_before(self) -> DownstreamSearch:
+        return DownstreamSearch(self.before)
 
     @cached_property
     def packages(self) -> dict[str, str]:
         return {node.id: node.package for node in (*self.before.nodes, *self.now.nodes)}
 
     @cached_property
-    def facts(self) -> tuple[Gathered, Gathered]:
+    def facts(self) -> tuple[ExtractedFacts, ExtractedFacts]:
         """The flow facts of what differs, of the base and now."""
         return flow_facts(self.base, self.differing.old), flow_facts(self.workspace, self.differing.new)
 
@@ -172,7 +172,7 @@ class _Reading:
     # Downstream
 
     def downstream(
-        self, nodes: Iterable[str], out: Iterable[_Out], reach: Reach, first: Iterable[Hop] = ()
+        self, nodes: Iterable[str], out: Iterable[_Out], reach: DownstreamSearch, first: Iterable[Hop] = ()
     ) -> tuple[Hop, ...]:
         """All nodes that what goes out reaches, nearest first, each once. nodes: that are changed themselves; first:
         nodes that are reached at once."""
@@ -191,7 +191,7 @@ class _Reading:
         told = sorted(found.values(), key=lambda each: each[0])
         return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
 
-    def walked(self, out: _Out, reach: Reach) -> list[tuple[int, Hop]]:
+    def walked(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
         key = (id(reach), out)
         known = self._walked.get(key)
         if known is None:
@@ -415,7 +415,7 @@ def _reader(workspace: Workspace) -> Callable[[str], bytes]:
     return read
 
 
-def _facts(gathered: Gathered, path: str) -> FlowFile | None:
+def _facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:
     facts = gathered.facts(path).facts if path in gathered.kinds else None
     return facts if isinstance(facts, FlowFile) else None
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
 from ..facts.place import Allow
-from ..rules.rule import SEVERITIES, Cure, Diagnostic, Finding, Rule
+from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
 from ..rules.severity import Doubt
 from ..rules.text import Value, attributed
 
@@ -42,7 +42,7 @@ class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 
-def _never(fix: tuple[Cure, ...], target: str) -> bool:
+def _never(fix: tuple[FixAction, ...], target: str) -> bool:
     return False
 
 
@@ -68,7 +68,7 @@ def merge_diagnostics(
     targets: Sequence[str],
     rules: Mapping[str, Rule],
     line_text: Callable[[str, int], str],
-    holds: Callable[[tuple[Cure, ...], str], bool] = _never,
+    holds: Callable[[tuple[FixAction, ...], str], bool] = _never,
 ) -> list[Finding]:
     """One fact about several targets becomes one finding.
 
@@ -120,7 +120,7 @@ def _finding(
     line: int,
     by_target: dict[str, Diagnostic],
     order: dict[str, int],
-    holds: Callable[[tuple[Cure, ...], str], bool],
+    holds: Callable[[tuple[FixAction, ...], str], bool],
 ) -> Finding:
     targets = sorted(by_target, key=lambda target: order.get(target, len(order)))
     diagnostics = [by_target[target] for target in targets]

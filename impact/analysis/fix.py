@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ...edges.files import write_file
 from ..rules.fix_actions import Declare, Insert, Remove, Replace
-from ..rules.rule import Cure, Edit, Finding
+from ..rules.rule import Edit, Finding, FixAction
 
 _BOM = b"\xef\xbb\xbf"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*\Z")
@@ -75,7 +75,7 @@ def make_fixes(
                 wanted.setdefault((cure.path, cure.name), set()).add(cure.tag)
     content: dict[str, bytes | None] = {}
 
-    def edits(fix: tuple[Cure, ...]) -> tuple[Edit, ...]:
+    def edits(fix: tuple[FixAction, ...]) -> tuple[Edit, ...]:
         result: list[Edit] = []
         for cure in fix:
             if cure.path not in content:
@@ -92,7 +92,7 @@ def make_fixes(
     return [finding._replace(fix=edits(finding.fix)) if finding.fix else finding for finding in findings]
 
 
-def _made(cure: Cure, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
+def _made(cure: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
     if isinstance(cure, Declare):
         tags = wanted.get((cure.path, cure.name), {cure.tag})
         return declare_dependency(data, cure.name, _joint(cure.tag, tags), cure.path)

@@ -14,7 +14,7 @@ from .downstream import Impact, impact_of
 from .session import CheckError, open_tree
 
 
-class Reached(NamedTuple):
+class ImpactResult(NamedTuple):
     """What was found; what the workspace and its base are called; and what to know about the base."""
 
     impact: Impact
@@ -27,7 +27,7 @@ class Reached(NamedTuple):
 def reached(
     path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None, cache: Path | None = None, follow_links: bool = False,
-) -> Reached:  # fmt: skip
+) -> ImpactResult:  # fmt: skip
     """What the changes since the base reach in the workspace at a path.
 
     base, rev, jobs, cache, follow_links: as for check. progress: called with (done, total) bytes while files are
@@ -45,4 +45,4 @@ def reached(
                 "folder of a workspace"
             )
         before = linked(old_tree, store, jobs)
-        return Reached(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))
+        return ImpactResult(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

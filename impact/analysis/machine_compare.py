@@ -8,19 +8,19 @@ from typing import NamedTuple
 
 from ..config import load
 from ..model.build_order import build_order
-from ..model.view import View
+from ..model.view import TargetView
 from ..model.workspace import Package
-from ..targets.capture import Difference, differences
+from ..targets.capture import MachineDifference, differences
 from ..targets.resolve import parse_target
 from .findings import rank
 from .report import Report, ReportedTarget
 from .session import Options
-from .target_compare import Item, compare_findings, group_items, open_sides
+from .target_compare import UpgradeItem, compare_findings, group_items, open_sides
 
 _MACHINE = ("distro", "date", "platform")
 
 
-class Use(NamedTuple):
+class DependencyUse(NamedTuple):
     """How a package of the workspace uses something. how: declared, built with, run with, or as in view.Need.
     subjects: what of it, as written, each once and in the order of first use; empty where there is nothing to name."""
 
@@ -32,8 +32,8 @@ class Use(NamedTuple):
 class Used(NamedTuple):
     """A difference with who of the workspace uses what of it."""
 
-    difference: Difference
-    uses: tuple[Use, ...] = ()
+    difference: MachineDifference
+    uses: tuple[DependencyUse, ...] = ()
 
 
 class Machines(NamedTuple):
@@ -47,11 +47,11 @@ class Machines(NamedTuple):
 
     first: ReportedTarget
     second: ReportedTarget
-    machine: tuple[Difference, ...]
+    machine: tuple[MachineDifference, ...]
     versions: tuple[Used, ...]
     others: int = 0
     report: Report | None = None
-    harms: tuple[Item, ...] = ()
+    harms: tuple[UpgradeItem, ...] = ()
     both: int = 0
 
 
@@ -112,7 +112,7 @@ def _significant(version: str) -> list[str]:
     return parts[1:] if parts[0] == "0" else parts
 
 
-def _uses(views: Iterable[View]) -> dict[str, tuple[Use, ...]]:
+def _uses(views: Iterable[TargetView]) -> dict[str, tuple[DependencyUse, ...]]:
     """Names of packages and libraries to who of the workspace uses them, and how, on any of the views."""
     found: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
     for view in views:
@@ -121,12 +121,12 @@ def _uses(views: Iterable[View]) -> dict[str, tuple[Use, ...]]:
                 subjects = found.setdefault(name, {}).setdefault((package.name, how), {})
                 subjects.update({subject: None} if subject else {})
     return {
-        name: tuple(Use(package, how, tuple(subjects)) for (package, how), subjects in by.items())
+        name: tuple(DependencyUse(package, how, tuple(subjects)) for (package, how), subjects in by.items())
         for name, by in found.items()
     }
 
 
-def _uses_of(view: View, package: Package) -> Iterable[tuple[str, str, str]]:
+def _uses_of(view: TargetView, package: Package) -> Iterable[tuple[str, str, str]]:
     """(name, how, what of it) of all that a package uses."""
     for need in view.needs(package):
         for provider in need.providers[:1]:

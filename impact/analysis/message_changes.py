@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..facts.interface import Section
 from ..model.workspace import Workspace
-from ..rules.interfaces.comparison import Pair, pairs, type_of
+from ..rules.interfaces.comparison import SectionPair, pairs, type_of
 
 
 class MessageChange(NamedTuple):
@@ -63,7 +63,7 @@ def holding(workspace: Workspace, name: str) -> set[str]:
     return found
 
 
-def _differences(pair: Pair) -> Iterator[tuple[int, str]]:
+def _differences(pair: SectionPair) -> Iterator[tuple[int, str]]:
     where = f" of the {pair.new.name}" if len(pair.file.definition.sections) > 1 else ""
     old, new = {f.name: f for f in pair.old.fields}, {f.name: f for f in pair.new.fields}
     for name, field in new.items():

@@ -97,7 +97,7 @@ class Checked(NamedTuple):
     originals: Mapping[str, bytes]
 
 
-class Sources:
+class SourceLines:
     """Lines of source files for excerpts and fingerprints. Keeps the last few files it was asked for."""
 
     def __init__(self, read: Callable[[str], bytes | None]):

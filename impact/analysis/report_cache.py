@@ -24,7 +24,7 @@ from ..targets.evidence_record import Evidence
 from ..targets.snapshot import data_stamp, updated_folder
 from ..tree import WorkingTree
 from ..tree.paths import blob_id
-from .report import Checked, Coverage, Report, ReportedPackage, Sources, report_target
+from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
 from .stored_fix import PackedFix, pack_fix, unpack_fix
 
@@ -167,7 +167,7 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         known=known,
         rules=_RulesNamed(kept.rules),
         seconds=time.perf_counter() - started,
-        excerpt=Sources(make_reader(read.tree)).excerpt,
+        excerpt=SourceLines(make_reader(read.tree)).excerpt,
         root=os.fspath(path),
     )
     return Checked(report, read.config, read.tree, originals)

@@ -18,7 +18,7 @@ from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import stamp
 from ..model.package import Watched
-from ..model.view import View
+from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..rules.severity import Doubt
@@ -29,7 +29,7 @@ from ..targets.evidence_record import Evidence
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
-from ..targets.target import Change, Target
+from ..targets.target import ChangeInForce, Target
 from .stored_fix import PackedFix, pack_fix, unpack_fix
 
 # (rule, what it yields)
@@ -79,7 +79,7 @@ def _unpack_tracked(data: bytes) -> Watched:
     return structs.replace(known, fields=default_fields(), surfaces=shipped(), uses=looked_for)
 
 
-def results_key(view: View, rules: Iterable[str]) -> bytes:
+def results_key(view: TargetView, rules: Iterable[str]) -> bytes:
     """The key of a view's judgement by these rules."""
     found = hashlib.sha1(view.workspace.identity)
     config = view.config
@@ -94,7 +94,7 @@ def results_key(view: View, rules: Iterable[str]) -> bytes:
     return found.digest()
 
 
-def load_results(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | None:
+def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
     found = _recalled(store, results_key(view, rules))
     if found is None:
@@ -105,7 +105,7 @@ def load_results(store: Store, view: View, rules: Sequence[str]) -> list[Yielded
     return hits
 
 
-def store_results(store: Store, view: View, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
+def store_results(store: Store, view: TargetView, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
     """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
     _keep(store, results_key(view, rules), diagnostics, unresolved)
@@ -155,7 +155,7 @@ def load_changes(store: Store, target: Target) -> None:
         data = store.memo("changes", name)
         if data is not None:
             try:
-                one.set_changes(msgspec.msgpack.decode(data, type=tuple[Change, ...]))
+                one.set_changes(msgspec.msgpack.decode(data, type=tuple[ChangeInForce, ...]))
                 continue
             except msgspec.MsgspecError:
                 pass

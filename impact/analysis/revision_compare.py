@@ -11,13 +11,13 @@ from ...edges.documents import DocumentError, load_yaml
 from ...edges.limits import limits
 from ..facts.extract import gather
 from ..model.flow.file_selection import code_kinds
-from ..model.view import View
+from ..model.view import TargetView
 from ..model.workspace import link
 from ..tree import GitTree, Tree, TreeError, at_merge_bases, inside, shown
 from .result_cache import load_tracked_names
 
 if TYPE_CHECKING:
-    from .session import Opened
+    from .session import OpenedWorkspace
 
 _PINNED = (".repos", ".rosinstall")
 
@@ -106,12 +106,12 @@ def read_pinned(path: Path) -> dict[str, str]:
     return {name.strip("/"): version for name, version in found.items()}
 
 
-def open_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
+def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -> OpenedWorkspace:
     """The workspace as it was in another tree, seen by the same targets."""
     second = code_kinds(tree) if opened.gathered.second is not None else None
     watched = load_tracked_names(opened.store)
     gathered = gather(tree, opened.store, jobs=jobs, second=second, along=watched.searches)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs, asked=opened.asked)
-    views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
+    views = [TargetView(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

@@ -16,7 +16,7 @@ from .findings import lower_repeats
 
 if TYPE_CHECKING:
     from ..model.workspace import Workspace
-    from .session import Opened
+    from .session import OpenedWorkspace
 
 # Starting processes costs about as much as running the rules on this many packages for one target.
 _ALONE = 16
@@ -36,7 +36,7 @@ Yielded = tuple[str, Diagnostic]
 
 
 def run_rules(
-    opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
+    opened: OpenedWorkspace, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
 ) -> Iterator[tuple[str, str, Diagnostic]]:
     """(rule, target, diagnostic) of all the rules; the target is empty for rules that know none.
 
@@ -69,7 +69,7 @@ def _of_scope(rules: Iterable[Rule], scope: Scope) -> list[Rule]:
 
 
 def _run_remembered(
-    opened: Opened,
+    opened: OpenedWorkspace,
     rules: Sequence[Rule],
     flow_rules: Sequence[Rule],
     crashed: Crashes,
@@ -109,7 +109,7 @@ def _run_remembered(
 
 
 def _run_in_parts(
-    opened: Opened,
+    opened: OpenedWorkspace,
     rules: Sequence[Rule],
     places: Sequence[int],
     flow_rules: Sequence[Rule],
@@ -163,7 +163,7 @@ def _run_in_parts(
 
 
 def _run_task(
-    opened: Opened,
+    opened: OpenedWorkspace,
     rules: Sequence[Rule],
     packages: Sequence[str],
     size: int,
@@ -179,7 +179,7 @@ def _run_task(
 
 
 def _run_part(
-    opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
+    opened: OpenedWorkspace, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
 ) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
     """What rules yield for some packages on one view, what was not resolved, and the rules that failed."""
     place, at = task
@@ -201,7 +201,7 @@ def _estimate_bytes(workspace: Workspace, packages: Collection[str]) -> int:
 
 
 def _run_singly(
-    opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
+    opened: OpenedWorkspace, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
 ) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
     """As _run_part, package by package, to name the package on which the rules end the process."""
     place, at = task
@@ -230,7 +230,7 @@ def _run_all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]
 
 
 def _run_flow_part(
-    opened: Opened, rules: Sequence[Rule], before: Workspace | None, failed: Crashes
+    opened: OpenedWorkspace, rules: Sequence[Rule], before: Workspace | None, failed: Crashes
 ) -> list[Yielded]:
     """What rules yield on the message flow. failed: receives the rules that failed."""
     packages = opened.workspace.packages
@@ -241,7 +241,7 @@ def _run_flow_part(
     ]
 
 
-def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:
+def _run_on_install(opened: OpenedWorkspace, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:
     """What a rule yields for the built files, machine by machine. It is not stored, since a machine can change at any
     time."""
     installed = opened.installed
@@ -256,7 +256,7 @@ def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tu
         yield from ((rule.name, shelf.target, each) for each in yielded)
 
 
-def _bind(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Diagnostic]]:
+def _bind(rule: Rule, opened: OpenedWorkspace, before: Workspace | None) -> Callable[[], Iterable[Diagnostic]]:
     """The call of a rule that asks no target."""
     if not rule.has_base:
         return lambda: rule.run(opened.workspace)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...edges.console import UserError
 from ...edges.limits import limits
 from ..config import Config, ConfigError, load, parse
-from ..facts.extract import Gathered, gather
+from ..facts.extract import ExtractedFacts, gather
 from ..facts.store import Store
 from ..model.discovery import Discovered, discover, generation
 from ..targets.resolve import Chosen, choose_targets
@@ -21,9 +21,9 @@ from ..tree.ignore import Index, enclosing_repository
 from ..tree.paths import within
 
 if TYPE_CHECKING:
-    from ..model.install_space import Installed
+    from ..model.install_space import InstallSpace
     from ..model.package import Watched
-    from ..model.view import View
+    from ..model.view import TargetView
     from ..model.workspace import Workspace
     from ..rules.rule import Rule
     from ..targets.asked_versions import AskedVersions
@@ -62,22 +62,22 @@ DEFAULTS = Options()
 Progress = Callable[[int, int], None]
 
 
-class Opened(NamedTuple):
+class OpenedWorkspace(NamedTuple):
     """A workspace ready to be asked: its files, facts, model, and how each target sees it; the versions of other
     packages that uses of them may be wrong in; what is installed of it, and what there is to run that with."""
 
     tree: Tree
     store: Store
-    gathered: Gathered
+    gathered: ExtractedFacts
     workspace: Workspace
     targets: Sequence[Chosen]
-    views: Sequence[View]
+    views: Sequence[TargetView]
     config: Config
     asked: AskedVersions
-    installed: Installed | None = None
+    installed: InstallSpace | None = None
     shelves: Sequence[Shelf] = ()
 
-    def one_by_one(self) -> Iterator[Opened]:
+    def one_by_one(self) -> Iterator[OpenedWorkspace]:
         """The same workspace on each of its targets alone."""
         for chosen, view in zip(self.targets, self.views, strict=True):
             yield self._replace(targets=[chosen], views=[view])
@@ -89,7 +89,7 @@ class Read(NamedTuple):
 
     tree: Tree
     store: Store
-    gathered: Gathered
+    gathered: ExtractedFacts
     discovered: Discovered
     ros: int
     targets: Sequence[Chosen]
@@ -104,7 +104,7 @@ def open_workspace(
     progress: Progress | None = None,
     chosen: Callable[[Config], Mapping[str, Rule]] | None = None,
     tree: Tree | None = None,
-) -> Iterator[Opened]:
+) -> Iterator[OpenedWorkspace]:
     """Reads a workspace up to its views. The store is closed at the end. Raises as check() does.
 
     chosen: gives the rules that will be asked, so that all facts they need are made in one pass. tree: what is read
@@ -162,9 +162,9 @@ def read_workspace(
         yield Read(tree, store, gathered, discovered, ros, targets, config, tracked_names)
 
 
-def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> Opened:
+def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> OpenedWorkspace:
     """A workspace that is read, linked and seen from each of its targets."""
-    from ..model.view import View
+    from ..model.view import TargetView
     from ..model.workspace import link
     from ..targets.asked_versions import AskedVersions
     from ..targets.providers.providers import default_providers
@@ -174,7 +174,7 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
     gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
-    views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
+    views = [TargetView(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
     installed, shelves = None, ()
     if options.install is not None:
         from ..model import install_space as built
@@ -182,7 +182,7 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
         installed = built.of_workspace(options.install, Path(path), workspace, store, options.jobs)
         shelves = built.shelves(installed, targets, config)
         gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
-    return Opened(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
+    return OpenedWorkspace(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
 
 
 def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
@@ -262,7 +262,7 @@ def make_reader(tree: Tree) -> Callable[[str], bytes | None]:
     return read
 
 
-def explain_nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
+def explain_nothing_analysed(path: str | os.PathLike[str], opened: OpenedWorkspace) -> str:
     """Why there is no package, and what to do, for a workspace without any."""
     where = shown(os.fspath(path))
     ignored = [PathProblem(place.path or ".", place.ignored) for place in opened.workspace.discovered.ignored]

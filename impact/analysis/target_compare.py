@@ -12,13 +12,13 @@ from ..rules.rule import Finding
 from .check import Checked
 from .check_opened import check_opened
 from .findings import rank
-from .session import CheckError, Opened, Options, open_workspace, select_rules
+from .session import CheckError, OpenedWorkspace, Options, open_workspace, select_rules
 
 
 class Sides(NamedTuple):
     """A workspace judged on two targets, each as a check of that target alone judges it."""
 
-    opened: Opened
+    opened: OpenedWorkspace
     first: Checked
     second: Checked
 
@@ -70,7 +70,7 @@ def _key(finding: Finding) -> tuple[str, str, str, int, str]:
     return finding.rule, finding.package, finding.path, finding.line, finding.subject
 
 
-class Item(NamedTuple):
+class UpgradeItem(NamedTuple):
     """One thing to do: findings of one cause, which is the same rule and subject in one package. The gravest come
     first; there is at least one."""
 
@@ -81,7 +81,7 @@ class Item(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
+def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[UpgradeItem]:
     """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
 
     What belongs to no package comes first, and a package that the order does not name last.
@@ -93,5 +93,5 @@ def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]
     made = []
     for (package, rule, subject), group in causes.items():
         group.sort(key=lambda finding: -rank(finding.severity))
-        made.append(Item(package, rule, subject, group[0].severity, tuple(group)))
+        made.append(UpgradeItem(package, rule, subject, group[0].severity, tuple(group)))
     return sorted(made, key=lambda item: (place.get(item.package, len(place)), item.package, -rank(item.severity)))

@@ -15,7 +15,7 @@ from . import fix
 from .findings import rank
 from .report import Report, ReportedPackage, ReportedTarget
 from .session import CheckError, Options, make_reader
-from .target_compare import Item, compare_findings, group_items, open_sides
+from .target_compare import UpgradeItem, compare_findings, group_items, open_sides
 
 
 class Upgrade(NamedTuple):
@@ -32,8 +32,8 @@ class Upgrade(NamedTuple):
     old: ReportedTarget
     report: Report
     packages: tuple[ReportedPackage, ...]
-    breaks: tuple[Item, ...]
-    deprecations: tuple[Item, ...]
+    breaks: tuple[UpgradeItem, ...]
+    deprecations: tuple[UpgradeItem, ...]
     brought: tuple[Finding, ...]
     both: tuple[Finding, ...]
     over: tuple[Finding, ...]
@@ -48,7 +48,7 @@ class Upgrade(NamedTuple):
         """The target that is moved to."""
         return self.report.targets[0]
 
-    def fixes(self, item: Item) -> int:
+    def fixes(self, item: UpgradeItem) -> int:
         """How many findings of an item `check --fix` cures."""
         return sum(finding.fingerprint in self.fixable for finding in item.findings)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.console import counted, visible
-from ..model.view import View
+from ..model.view import TargetView
 from ..targets.distro.distro import DistroTarget
 from ..tree import JoinedTree
 from .session import Options, open_workspace
@@ -21,7 +21,7 @@ _LEVELS, _LOOKS_AT_MOST = 4, 5_000
 _PRODUCTS = frozenset(("build", "install", "devel", "log"))
 
 
-class Offer(NamedTuple):
+class NameOffer(NamedTuple):
     """One way to get a name. kind: workspace, package, key. version and since may be empty where not known."""
 
     kind: str
@@ -31,13 +31,13 @@ class Offer(NamedTuple):
     note: str
 
 
-class Answer(NamedTuple):
+class WhyAnswer(NamedTuple):
     """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
     used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it."""
 
     target: str
     as_what: str
-    offers: tuple[Offer, ...]
+    offers: tuple[NameOffer, ...]
     used: tuple[str, ...]
     undeclared: tuple[str, ...]
     changes: tuple[str, ...]
@@ -73,7 +73,7 @@ def is_workspace(folder: Path) -> bool:
 
 def answers(
     name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
-) -> list[Answer]:  # fmt: skip
+) -> list[WhyAnswer]:  # fmt: skip
     """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
     check() does."""
     options = Options(targets=targets, follow_links=follow_links)
@@ -81,7 +81,7 @@ def answers(
         return [answer for view in opened.views for answer in _answers(view, name)]
 
 
-def _answers(view: View, name: str) -> list[Answer]:
+def _answers(view: TargetView, name: str) -> list[WhyAnswer]:
     found = []
     for what, providers in (
         ("header", view.header(name)),
@@ -93,7 +93,7 @@ def _answers(view: View, name: str) -> list[Answer]:
         # What is not there is told only where nothing else is.
         offers = tuple(offer for offer in offers if offer.kind != "absent") or offers[:1]
         if not offers and any(not p.name for p in providers):
-            offers = (Offer("system", "", "", "", "comes with the compiler, CMake or Python"),)
+            offers = (NameOffer("system", "", "", "", "comes with the compiler, CMake or Python"),)
         if offers:
             found.append((what, offers))
     if view.available(name) or view.target.ever_released(name) or view.target.known_key(name):
@@ -114,23 +114,23 @@ def _answers(view: View, name: str) -> list[Answer]:
         changes = (f"gone: `{name}` is not available{where}{instead}", *changes)
     if not found:
         found = [("name", ())]
-    return [Answer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
+    return [WhyAnswer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
 
 
-def _offer(view: View, name: str, package: str) -> Offer:
+def _offer(view: TargetView, name: str, package: str) -> NameOffer:
     target = view.target
     here = view.workspace.packages.get(name)
     if here is not None:
-        return Offer("workspace", name, here.manifest.version, "", here.path)
+        return NameOffer("workspace", name, here.manifest.version, "", here.path)
     version = target.version(name)
     if version is not None:
-        return Offer("package", name, version, target.since(name) if isinstance(target, DistroTarget) else "", "")
+        return NameOffer("package", name, version, target.since(name) if isinstance(target, DistroTarget) else "", "")
     resolution = target.resolve(name)
     if resolution is not None:
         libraries = [
             f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)
         ]
-        return Offer(
+        return NameOffer(
             "key",
             name,
             ", ".join(libraries),
@@ -138,7 +138,7 @@ def _offer(view: View, name: str, package: str) -> Offer:
             f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}",
         )
     last = target.last_distro(name)
-    return Offer(
+    return NameOffer(
         "absent",
         name,
         "",
@@ -147,7 +147,7 @@ def _offer(view: View, name: str, package: str) -> Offer:
     )
 
 
-def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     used, undeclared = [], []
     for package in view:
         closure = None
@@ -166,13 +166,13 @@ def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(used), tuple(undeclared)
 
 
-def as_text(name: str, found: list[Answer], *, looked: bool = True) -> str:
+def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
     """The answers for people. Meanings of a name that lead to the same offers are told together. looked: whether uses
     were looked for."""
     lines: list[str] = []
     for target in dict.fromkeys(answer.target for answer in found):
         here = [answer for answer in found if answer.target == target]
-        meanings: dict[tuple[Offer, ...], list[str]] = {}
+        meanings: dict[tuple[NameOffer, ...], list[str]] = {}
         for answer in here:
             meanings.setdefault(answer.offers, []).append(answer.as_what)
         for offers, whats in meanings.items():
@@ -205,7 +205,7 @@ def _is_gone(change: str, name: str) -> bool:
     return change.startswith("gone: ") or (f"`{name}`" in change.partition(" → ")[0] and "(removed" in change)
 
 
-def _offer_line(offer: Offer) -> str:
+def _offer_line(offer: NameOffer) -> str:
     since = f"since {offer.since}" if offer.since else ""
     return "  " + "  ".join(
         part for part in (f"{offer.kind} {offer.name}".rstrip(), offer.version, since, offer.note) if part

@@ -44,7 +44,9 @@ def impact(
         say_notes(found.notes)
         part = chosen(found.impact, packages, topics, nodes)
         if format == "json":
-            return impact_report.as_json(part, impact_report.Told(__version__, found.root, found.rev, found.base))
+            return impact_report.as_json(
+                part, impact_report.ImpactHeading(__version__, found.root, found.rev, found.base)
+            )
         if format == "markdown":
             return impact_report.markdown(part)
         return impact_report.text(part, everything, style_of(output))

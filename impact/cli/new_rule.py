@@ -32,7 +32,7 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -43,7 +43,7 @@ from ..text import Text
     preview=True,
     texts=Text("`{{package}}` exports `{{subject}}`", help="remove it"),
 )
-def {function}(view: View):
+def {function}(view: TargetView):
     for package in view:
         for export in package.manifest.exports:
             if export.tag != "{subject}":

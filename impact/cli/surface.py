@@ -44,17 +44,17 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
 
     def answer(store) -> str:
         from ...databuild.surface.clones import Clone
-        from ..targets.surface.compare import State, compare, compare_states
+        from ..targets.surface.compare import RepositorySurfaces, compare, compare_states
 
         if os.path.isdir(what) and repos is None:
             clone = Clone(Path(what))
-            states = [State(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
+            states = [RepositorySurfaces(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
             changes = compare_states(*states)
             unknown = [name for name in packages if name not in changes]
             if unknown:
                 raise UserError(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
             changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
-            sources = [report.Source(revision, "", clone.name, revision) for revision in (old, new)]
+            sources = [report.VersionSource(revision, "", clone.name, revision) for revision in (old, new)]
         else:
             (first, before), (second, after) = (_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
@@ -64,7 +64,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
                 report.with_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
                 for change in changes[what]
             )
-        found = report.Difference(sources[0], sources[1], changes)
+        found = report.SurfaceDifference(sources[0], sources[1], changes)
         if format == "json":
             return report.diff_json(found, __version__)
         if format == "markdown":
@@ -106,22 +106,22 @@ def _surface(package: str, asked: str, repos: Path | None, store, jobs):
     from ...databuild.surface.clones import Clones
     from ...databuild.surface.installed import is_installed, surface_at
     from ...databuild.surface.stored_versions import StoredVersions
-    from ..report.surface import Source
+    from ..report.surface import VersionSource
     from ..targets.surface.store import shipped
 
     if is_installed(asked):
         surface, state = surface_at(package, asked)
-        return Source(asked, surface.version, asked, "installed"), state
+        return VersionSource(asked, surface.version, asked, "installed"), state
     if repos is None:
         versions = StoredVersions(shipped())
         asked = asked or versions.newest(package)
         stored, state = versions.surface(package, asked)
-        return Source(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
+        return VersionSource(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
     clones = Clones(repos)
     asked = asked or clones.newest(package)
     found, state = clones.surface(package, asked, store, jobs)
     revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
-    return Source(asked, found.version, found.clone.name, revision, found.approximate), state
+    return VersionSource(asked, found.version, found.clone.name, revision, found.approximate), state
 
 
 def _hashes(package: str, asked: str, state) -> dict[str, str]:

@@ -72,7 +72,7 @@ def constant(text: str) -> bool | None:
     return float(text) != 0 if NUMBER.match(text) else None
 
 
-class Test:
+class CMakeTest:
     """The grammar of if() after cmake-commands(7): parentheses, unary tests, binary tests, NOT, then AND and OR from
     left to right. Three-valued: True, False, or None when it cannot be known. Subclasses say what operands mean."""
 
@@ -155,7 +155,7 @@ def _tokens(text: str) -> tuple[Token, ...]:
     return tuple(tokens)
 
 
-class _OnMachine(Test):
+class _OnMachine(CMakeTest):
     """A test on somebody's machine."""
 
     def __init__(self, text: str, environment: Environment, declared: Collection[str]) -> None:

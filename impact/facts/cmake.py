@@ -8,7 +8,7 @@ import msgspec
 from .place import Problem
 
 
-class Argument(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CMakeArgument(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One argument: its raw text (references not expanded, escapes kept), how it was quoted, where it starts.
 
     quoting: `` for unquoted, `"` for quoted, `[` for bracket arguments.
@@ -24,7 +24,7 @@ class Command(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One command invocation. name is in lower case, arguments in order; nested parentheses appear as `(` and `)`."""
 
     name: str
-    arguments: tuple[Argument, ...]
+    arguments: tuple[CMakeArgument, ...]
     line: int
     column: int
     end_line: int
@@ -72,7 +72,7 @@ class _Open(NamedTuple):
     name: str
     line: int
     column: int
-    arguments: list[Argument]
+    arguments: list[CMakeArgument]
 
     def closed(self, end_line: int) -> Command:
         return Command(self.name, tuple(self.arguments), self.line, self.column, end_line)
@@ -171,23 +171,23 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
             continue
 
         if kind == "unquoted":
-            opened.arguments.append(Argument(token.group("unquoted"), "", line, column))
+            opened.arguments.append(CMakeArgument(token.group("unquoted"), "", line, column))
         elif kind == "quoted":
-            opened.arguments.append(Argument(token.group("quoted"), '"', line, column))
+            opened.arguments.append(CMakeArgument(token.group("quoted"), '"', line, column))
         elif kind == "close":
             depth -= 1
             if depth:
-                opened.arguments.append(Argument(")", "", line, column))
+                opened.arguments.append(CMakeArgument(")", "", line, column))
             else:
                 commands.append(opened.closed(line))
                 last_command_line = line
         elif kind == "open":
             depth += 1
-            opened.arguments.append(Argument("(", "", line, column))
+            opened.arguments.append(CMakeArgument("(", "", line, column))
         elif kind == "bracket":
             content, position = _bracket_end(text, token, line, problems)
             if token.group("bracket")[0] != "#":
-                opened.arguments.append(Argument(content, "[", line, column))
+                opened.arguments.append(CMakeArgument(content, "[", line, column))
         elif kind == "other" and token.group("other") != '"':
             problems.append(Problem(line, f"`{_short(token.group('other'))}` in the arguments of {opened.name}()"))
         elif kind == "other":
@@ -215,7 +215,7 @@ def _close_early(text: str, start: int, line: int, column: int, opened: _Open, c
     """Ends a string that no quote closes at its line's end, and its command with it."""
     end = text.find("\n", start)
     end = len(text) if end < 0 else end
-    opened.arguments.append(Argument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
+    opened.arguments.append(CMakeArgument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
     commands.append(opened.closed(line))
     following = _COMMAND_LINE.search(text, end)
     return following.start(1) if following else len(text)

@@ -30,7 +30,7 @@ _SEARCHED = 100
 _WEAK = 2
 
 
-class Asked(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class AskedSymbolVersions(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Symbol versions that are asked of one library: `libc.so.6` and (`GLIBC_2.34`, `GLIBC_2.38`)."""
 
     library: str
@@ -60,7 +60,7 @@ class Elf(msgspec.Struct, frozen=True, array_like=True, gc=False):
     soname: str = ""
     needed: tuple[str, ...] = ()
     search: tuple[str, ...] = ()
-    asked: tuple[Asked, ...] = ()
+    asked: tuple[AskedSymbolVersions, ...] = ()
     offers: tuple[str, ...] = ()
     undefined: tuple[Undefined, ...] = ()
     defined: int = 0
@@ -145,7 +145,7 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
                 for version in each:
                     names[version["vna_other"] & 0x7FFF] = version.name
                     of_library.append(version.name)
-                asked.append(Asked(library.name or "", tuple(sorted(of_library))))
+                asked.append(AskedSymbolVersions(library.name or "", tuple(sorted(of_library))))
             found["asked"] = tuple(asked)
         elif isinstance(section, GNUVerDefSection):
             # The first names the library itself.
@@ -258,7 +258,7 @@ def defined(data: bytes | IO[bytes]) -> frozenset[str] | None:
 _IDENTIFIER = re.compile(r"[0-9]{1,9}")
 
 
-class Member(NamedTuple):
+class SymbolName(NamedTuple):
     """A C++ symbol. name: `rclcpp::Node::now`, without its parameters; scope: how all symbols of its class or namespace
     go on behind `_ZN`, or `_ZNK`; empty for one of none."""
 
@@ -266,7 +266,7 @@ class Member(NamedTuple):
     scope: str
 
 
-def member(symbol: str) -> Member | None:
+def member(symbol: str) -> SymbolName | None:
     """What a mangled name of C++ is a member of; None for names that do not begin with plain identifiers.
 
     Source: the Itanium C++ ABI, section 5.1 (nested names, special names)."""
@@ -282,7 +282,7 @@ def member(symbol: str) -> Member | None:
         names.append(rest[found.end() : at])
     if special or rest[at : at + 1] in ("C", "D", "I"):
         before = at
-    return Member("::".join(names), rest[:before] if nested else "") if names else None
+    return SymbolName("::".join(names), rest[:before] if nested else "") if names else None
 
 
 def _clause(error: Exception) -> str:

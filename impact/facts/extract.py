@@ -45,7 +45,7 @@ Searches = Mapping[str, tuple[str, Any]]
 _Unread = tuple[int, str, tuple[str, ...]]
 
 
-class Gathered:
+class ExtractedFacts:
     """The facts of a tree's files, decoded when asked for.
 
     kinds: kind by path, of every file that was recognised and could be read. ids: content id by path, of the same
@@ -60,7 +60,7 @@ class Gathered:
         self.ids: dict[str, str] = {}
         self.problems: list[PathProblem] = []
         self.extracted = 0
-        self.second: Gathered | None = None
+        self.second: ExtractedFacts | None = None
         self._packed: dict[tuple[str, str], bytes] = {}
         self._decoded: dict[tuple[str, str], Any] = {}
         self._looked: dict[bytes, Any] = {}
@@ -194,7 +194,7 @@ def gather(
     kind_of: Callable[[str], str | None] = kinds.kind_of,
     second: Callable[[str], str | None] | None = None,
     along: Callable[[], Searches] = dict,
-) -> Gathered:
+) -> ExtractedFacts:
     """Finds or makes the facts of every file whose kind is known.
 
     kind_of: the kind of facts wanted of a path, None for none; by its name when left out. second: the kind wanted of it
@@ -203,8 +203,8 @@ def gather(
     jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
     facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
     """
-    gathered = Gathered(tree, store)
-    beside = gathered.second = Gathered(tree, store) if second is not None else None
+    gathered = ExtractedFacts(tree, store)
+    beside = gathered.second = ExtractedFacts(tree, store) if second is not None else None
     key = tree.memory_key()
     entries = tree.entries()
     if key is not None:
@@ -273,7 +273,7 @@ def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
 
 
 def _make(
-    gathered: Gathered,
+    gathered: ExtractedFacts,
     unread: list[_Unread],
     jobs: int,
     progress: Callable[[int, int], None] | None,
@@ -284,7 +284,7 @@ def _make(
     unread.sort(key=lambda file: (-file[0], file[1]))
     total = sum(size for size, _, _ in unread)
     done = 0
-    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]] = {}
+    paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]] = {}
     for look in _looks(gathered):
         for path, content in look.ids.items():
             paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
@@ -316,14 +316,14 @@ def _make(
         gathered.store.put(rows)
 
 
-def _looks(gathered: Gathered) -> list[Gathered]:
+def _looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
     return [gathered] if gathered.second is None else [gathered, gathered.second]
 
 
 def _chunks(
-    gathered: Gathered,
+    gathered: ExtractedFacts,
     unread: list[_Unread],
-    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]],
+    paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]],
     advance: Callable[[int], None],
 ) -> Iterator[list[_Item]]:
     """Reads files as they are needed and yields those whose content has no facts yet, about _CHUNK_BYTES at a time."""
@@ -385,7 +385,7 @@ def _batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
         yield batch
 
 
-def _unreadable(looks: list[Gathered], path: str, message: str) -> None:
+def _unreadable(looks: list[ExtractedFacts], path: str, message: str) -> None:
     """Leaves a path out of every look; the first names it."""
     _drop(looks[0], path, message)
     for look in looks[1:]:
@@ -393,7 +393,7 @@ def _unreadable(looks: list[Gathered], path: str, message: str) -> None:
         look.ids.pop(path, None)
 
 
-def _drop(gathered: Gathered, path: str, message: str) -> None:
+def _drop(gathered: ExtractedFacts, path: str, message: str) -> None:
     gathered.problems.append(PathProblem(path, message))
     gathered.kinds.pop(path, None)
     gathered.ids.pop(path, None)

@@ -11,7 +11,7 @@ import msgspec
 from .place import Problem
 
 
-class Expr(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FlowExpr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An expression as far as it is followed. text: what it says, by kind; parts: what it is made of.
 
     | kind | text | parts |
@@ -38,8 +38,8 @@ class Expr(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     kind: str
     text: str = ""
-    parts: tuple[Expr, ...] = ()
-    receiver: Expr | None = None
+    parts: tuple[FlowExpr, ...] = ()
+    receiver: FlowExpr | None = None
 
 
 class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -74,7 +74,7 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
     early: bool = False
 
 
-class Call(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FlowCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A call. callee: path as in Expr (`this.nh_.advertise`, `std::bind`, `node.create_publisher`), its last part being
     the function; empty receiver pieces that are no path are written `()`: `get().publish`. types: template arguments as
     written, without the angle brackets. guard: place in Function.guards, -1 for none. target: what the result is kept
@@ -83,7 +83,7 @@ class Call(msgspec.Struct, frozen=True, array_like=True, gc=False):
     An element of a receiver or target is `[]` as in Access: `this.pubs_.[].publish`."""
 
     callee: str
-    arguments: tuple[Expr, ...]
+    arguments: tuple[FlowExpr, ...]
     line: int
     column: int
     guard: int = -1
@@ -98,12 +98,12 @@ class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
     assigned, where it is a literal (`remappings["image"] = ...`)."""
 
     target: str
-    value: Expr
+    value: FlowExpr
     line: int
     guard: int = -1
     type: str = ""
     operator: str = "="
-    key: Expr | None = None
+    key: FlowExpr | None = None
 
 
 class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -121,16 +121,16 @@ class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
     keyword: str = ""
 
 
-class Parameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FlowParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter of a function. type: as written (annotation in Python), empty for none. Python's `self` and `cls` are
     left out; the others are named `*args`, `**kwargs`, and `*` alone before those that are given by keyword only."""
 
     name: str
     type: str = ""
-    default: Expr | None = None
+    default: FlowExpr | None = None
 
 
-class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FlowFunction(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A function's body. name: scopes joined by `::` in C++ and `.` in Python, template arguments left out; a lambda is
     called as what it stands in, followed by `lambda@line:column`. owner: the class it belongs to, as far as the file
     says (`ns::Class` for `void Class::f()` inside `namespace ns`), empty for none. decorators: as paths. returns: the
@@ -141,11 +141,11 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     name: str
     owner: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[FlowParameter, ...]
     line: int
     end: int
     guards: tuple[Guard, ...] = ()
-    calls: tuple[Call, ...] = ()
+    calls: tuple[FlowCall, ...] = ()
     assignments: tuple[Assignment, ...] = ()
     accesses: tuple[Access, ...] = ()
     decorators: tuple[str, ...] = ()
@@ -155,22 +155,22 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
     types: tuple[str, ...] = ()
 
 
-class Member(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class DataMember(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A data member or a constant. type as written; value: its initialiser."""
 
     name: str
     type: str
     line: int
-    value: Expr | None = None
+    value: FlowExpr | None = None
 
 
-class Class(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FlowClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A class or struct. name: with its scopes. bases: as written, template arguments kept. methods: names of those it
     declares, bodies or not. types: parameters of a template, empty for those that are no types."""
 
     name: str
     bases: tuple[str, ...]
-    members: tuple[Member, ...]
+    members: tuple[DataMember, ...]
     methods: tuple[str, ...]
     line: int
     end: int
@@ -195,9 +195,9 @@ class FlowFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     language: str
     aliases: tuple[Alias, ...] = ()
-    classes: tuple[Class, ...] = ()
-    functions: tuple[Function, ...] = ()
-    constants: tuple[Member, ...] = ()
+    classes: tuple[FlowClass, ...] = ()
+    functions: tuple[FlowFunction, ...] = ()
+    constants: tuple[DataMember, ...] = ()
     exports: tuple[str, ...] = ()
     unread: tuple[tuple[int, int], ...] = ()
     problems: tuple[Problem, ...] = ()

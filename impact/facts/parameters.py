@@ -25,7 +25,7 @@ from .python.source import read
 from .usage import argument_spans
 
 
-class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter. default: as written, None for none, `?` where it is no plain value."""
 
     name: str
@@ -36,7 +36,7 @@ class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """parameters: in the order of the file. mentioned: see mentions(), the last parts of names (`scale` of
     `PathAlign.scale`), each once; comments count too."""
 
-    parameters: tuple[Declared, ...] = ()
+    parameters: tuple[DeclaredParameter, ...] = ()
     problems: tuple[Problem, ...] = ()
     mentioned: tuple[str, ...] = ()
 
@@ -93,7 +93,7 @@ _SHOWN = 60
 _LONGEST = 10_000
 
 
-def _in_cpp(data: bytes) -> Iterator[Declared]:
+def _in_cpp(data: bytes) -> Iterator[DeclaredParameter]:
     if b"declare" not in data:
         return
     scanned = scan(data)
@@ -104,13 +104,13 @@ def _in_cpp(data: bytes) -> Iterator[Declared]:
         if call[1].endswith("_parameters"):
             space = _NAME.match(arguments[0]) if arguments else None
             for name, value in _PAIR.findall(arguments[1]) if len(arguments) > 1 else ():
-                yield Declared(f"{space[1]}.{name}" if space else name, _cpp_value(value))
+                yield DeclaredParameter(f"{space[1]}.{name}" if space else name, _cpp_value(value))
             continue
         for place, text in enumerate(arguments[:2]):
             whole, last = _NAME.match(text), _LAST_NAME.match(text)
             if whole or last:
                 name = whole[1] if whole else f"*.{last[1]}" if last else ""
-                yield Declared(name, _cpp_value(arguments[place + 1]) if place + 1 < len(arguments) else None)
+                yield DeclaredParameter(name, _cpp_value(arguments[place + 1]) if place + 1 < len(arguments) else None)
                 break
 
 
@@ -138,7 +138,7 @@ def _short(value: str) -> str:
     return value if len(value) <= _SHOWN else "?"
 
 
-def _in_python(data: bytes) -> Iterator[Declared]:
+def _in_python(data: bytes) -> Iterator[DeclaredParameter]:
     tree = read(data).tree if b"declare" in data else None
     if tree is None:
         return
@@ -165,15 +165,15 @@ def _in_python(data: bytes) -> Iterator[Declared]:
 
 def _python_parameter(
     name: ast.expr | None, default: ast.expr | None, constants: Constants, start: str = ""
-) -> Iterator[Declared]:
+) -> Iterator[DeclaredParameter]:
     told = constants.value(name) if name is not None else None
     if isinstance(told, str):
-        yield Declared(start + told, _python_value(default, constants))
+        yield DeclaredParameter(start + told, _python_value(default, constants))
         return
     last = name.values[-1] if isinstance(name, ast.JoinedStr) and name.values else None
     last = name.right if isinstance(name, ast.BinOp) else last
     if isinstance(last, ast.Constant) and isinstance(last.value, str) and last.value.strip("."):
-        yield Declared(f"*.{last.value.lstrip('.')}", _python_value(default, constants))
+        yield DeclaredParameter(f"*.{last.value.lstrip('.')}", _python_value(default, constants))
 
 
 def _python_value(node: ast.expr | None, constants: Constants) -> str | None:
@@ -197,7 +197,7 @@ def _written(value: Any) -> str:
     return _short(str(value))
 
 
-def _in_cfg(data: bytes) -> Iterator[Declared]:
+def _in_cfg(data: bytes) -> Iterator[DeclaredParameter]:
     tree = read(data).tree
     constants = module_constants(tree) if tree is not None else Constants()
     for node in ast.walk(tree) if tree is not None else ():
@@ -209,13 +209,13 @@ def _in_cfg(data: bytes) -> Iterator[Declared]:
                 yield from _python_parameter(name, default, constants)
 
 
-def _in_yaml(data: bytes) -> Iterator[Declared]:
+def _in_yaml(data: bytes) -> Iterator[DeclaredParameter]:
     whole = load_yaml(data)
     for each in whole.values() if isinstance(whole, Mapping) else ():
         yield from _of_library(each, "")
 
 
-def _of_library(node: Any, start: str) -> Iterator[Declared]:
+def _of_library(node: Any, start: str) -> Iterator[DeclaredParameter]:
     """Parameters of generate_parameter_library: what has a `type` is one, all else is a group."""
     for name, inner in node.items() if isinstance(node, Mapping) else ():
         if not isinstance(inner, Mapping):
@@ -223,6 +223,6 @@ def _of_library(node: Any, start: str) -> Iterator[Declared]:
         path = f"{start}{'*' if str(name).startswith('__map_') else name}"
         if isinstance(inner.get("type"), str):
             default = inner.get("default_value")
-            yield Declared(path, None if default is None else _written(default))
+            yield DeclaredParameter(path, None if default is None else _written(default))
         else:
             yield from _of_library(inner, f"{path}.")

@@ -13,7 +13,7 @@ import msgspec
 from .condition import Condition
 from .cpp import CppFile, places_of
 from .place import Problem
-from .usage import Rows, Table, Use, find_uses, initialises, uses_of
+from .usage import Rows, UsageTable, WatchedUse, find_uses, initialises, uses_of
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -31,13 +31,13 @@ class SearchedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a C++ file has of what a Table describes. uses: the first of every label under the same conditions.
     functions: those that such uses call and that the file declares itself. words: the bare words, in order."""
 
-    uses: tuple[Use, ...] = ()
+    uses: tuple[WatchedUse, ...] = ()
     functions: tuple[str, ...] = ()
     words: tuple[WordUse, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 
-def searched_cpp(data: bytes, facts: CppFile, table: Table) -> SearchedCpp:
+def searched_cpp(data: bytes, facts: CppFile, table: UsageTable) -> SearchedCpp:
     """The uses, functions and words of a table that a C++ file has."""
     words = sorted(table.words.intersection(facts.words.split(" ")))
     uses, functions = find_uses(facts, data, table)
@@ -52,7 +52,7 @@ def _word_use(data: bytes, word: str) -> WordUse:
 class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """uses: what a Python file or one of parameters has of what Rows describe."""
 
-    uses: tuple[Use, ...] = ()
+    uses: tuple[WatchedUse, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 

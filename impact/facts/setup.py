@@ -13,7 +13,7 @@ from msgspec import structs
 from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
-from .python.constants import Constants, Text, Unresolved
+from .python.constants import Constants, TextConstant, UnknownValue
 from .python.source import PythonFile, read
 from .python.source import extract as read_python
 from .python.text import dotted
@@ -101,7 +101,7 @@ class _Reader(Constants):
                 self.call(statement.value)
             elif isinstance(statement, (ast.For, ast.While)):
                 if isinstance(statement, ast.For):
-                    self.assign(statement.target, Unresolved("a loop variable"))
+                    self.assign(statement.target, UnknownValue("a loop variable"))
                 self.run(statement.body)
             elif isinstance(statement, (ast.If, ast.With, ast.Try, ast.FunctionDef)):
                 for field in ("body", "handlers", "orelse", "finalbody"):
@@ -123,7 +123,7 @@ class _Reader(Constants):
     def result(self, call: ast.Call) -> Any:
         last = dotted(call.func).rpartition(".")[2]
         if last in ("find_packages", "find_namespace_packages"):
-            return [Text("*", call.lineno)]
+            return [TextConstant("*", call.lineno)]
         return self.keywords(call) if last in SETUP_CALLS else super().result(call)
 
     def file(self) -> SetupFile:
@@ -153,7 +153,7 @@ class _Reader(Constants):
                 found.append(str(item))
             elif isinstance(item, list):
                 stack[:0] = item
-            elif isinstance(item, Unresolved):
+            elif isinstance(item, UnknownValue):
                 self.unresolved.append(f"{argument}: {item.what}")
         return found
 
@@ -172,17 +172,17 @@ class _Reader(Constants):
             for group in ("console_scripts", "gui_scripts"):
                 entries = value.get(group, [])
                 for item in entries if isinstance(entries, list) else [entries]:
-                    if isinstance(item, Unresolved):
+                    if isinstance(item, UnknownValue):
                         self.unresolved.append(f"entry_points: {item.what}")
                     elif isinstance(item, str) and (entry := ENTRY_POINT.match(item)):
                         found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1)))
-        elif isinstance(value, Unresolved):
+        elif isinstance(value, UnknownValue):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
 
     def script_folders(self, value: Any) -> Iterator[tuple[str, str, int]]:
         """Of setup(options={"install": {"install_scripts": ...}})."""
-        if isinstance(value, Unresolved):
+        if isinstance(value, UnknownValue):
             self.unresolved.append(f"options: {value.what}")
         if not isinstance(value, dict):
             return
@@ -191,25 +191,25 @@ class _Reader(Constants):
             folder = options.get(option) if isinstance(options, dict) else options
             if isinstance(folder, str):
                 yield command, str(folder), getattr(folder, "line", 1)
-            elif isinstance(folder, Unresolved):
+            elif isinstance(folder, UnknownValue):
                 self.unresolved.append(f"options: {folder.what}")
 
     def data_files(self, value: Any) -> list[tuple[str, str, int]]:
         found: list[tuple[str, str, int]] = []
         for item in value if isinstance(value, list) else [value]:
-            if isinstance(item, Unresolved):
+            if isinstance(item, UnknownValue):
                 self.unresolved.append(f"data_files: {item.what}")
             if not isinstance(item, list) or len(item) != 2:
                 continue
             destination, files = item
             if not isinstance(destination, str):
-                what = destination.what if isinstance(destination, Unresolved) else "a destination"
+                what = destination.what if isinstance(destination, UnknownValue) else "a destination"
                 self.unresolved.append(f"data_files: {what}")
                 continue
             for file in files if isinstance(files, list) else [files]:
                 if isinstance(file, str):
                     found.append((str(destination), str(file), getattr(file, "line", 1)))
-                elif isinstance(file, Unresolved):
+                elif isinstance(file, UnknownValue):
                     self.unresolved.append(f"data_files: {file.what}")
                 elif isinstance(file, list):
                     found.extend((str(destination), str(f), getattr(f, "line", 1)) for f in file if isinstance(f, str))

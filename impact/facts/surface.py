@@ -14,7 +14,7 @@ from .cpp import Include
 from .place import Problem
 
 
-class Argument(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CppParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter of a function. type: normalised, without a `const` that callers do not see. default: as written,
     white space as single blanks, None for none. pack: `T... name`."""
 
@@ -74,7 +74,7 @@ class Entity(msgspec.Struct, frozen=True, array_like=True, gc=False):
     name: str
     line: int
     type: str = ""
-    parameters: tuple[Argument, ...] | None = None
+    parameters: tuple[CppParameter, ...] | None = None
     template: tuple[TemplateParameter, ...] | None = None
     traits: tuple[str, ...] = ()
     access: str = ""

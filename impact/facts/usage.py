@@ -58,7 +58,7 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return bool(self.arguments) and not self.names
 
 
-class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class WatchedUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use that a table describes, by the label it has there. types: the template arguments that are written."""
 
     label: str
@@ -122,7 +122,7 @@ _ASSIGNED = re.compile(rb"\s*=(?!=)")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
-class Table:
+class UsageTable:
     """What to look for in C++ files: patterns with their labels, by a word that stands in each; and bare words.
 
     stamp: differs whenever another table does. heads: first parts of words that are qualified names. called: words that
@@ -148,12 +148,12 @@ class Table:
             rows = self._needed[word] = [(row, _needed_parts(row[1])) for row in self.patterns[word]]
         return [row for row, needed in rows if all([any([part in vocabulary for part in each]) for each in needed])]
 
-    def qualified_uses(self, facts: CppFile) -> Iterator[Use]:
+    def qualified_uses(self, facts: CppFile) -> Iterator[WatchedUse]:
         """Uses that are told by a qualified name as it stands, so that the file need not be looked at again."""
         for name in facts.qualified:
             if name.text.startswith(self._heads):
                 for label, _ in self.patterns.get("::".join(name.text.split("::", 2)[:2]), ()):
-                    yield Use(label, name.line, name.column, name.conditions)
+                    yield WatchedUse(label, name.line, name.column, name.conditions)
 
 
 class Rows:
@@ -169,7 +169,7 @@ def stamp_of(*tables: object) -> str:
     return hashlib.sha1(repr(tables).encode()).hexdigest()[:16]
 
 
-def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...], tuple[str, ...]]:
+def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[WatchedUse, ...], tuple[str, ...]]:
     """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
@@ -189,14 +189,14 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     return tuple(uses), tuple(functions)
 
 
-def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Use]:
+def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[WatchedUse]:
     """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
     seen = set()
     for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
         key = (number, place[2])
         if key not in seen:
             seen.add(key)
-            yield Use(rows[number][0], *place)
+            yield WatchedUse(rows[number][0], *place)
 
 
 def template_arguments(text: str, at: int) -> re.Match[str] | None:

@@ -12,9 +12,9 @@ from ..model.flow.code import tail
 from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
-from .history import State
-from .match import SAME, At, Names, OutletAt, asked, matched, matched_outlets
-from .statements import Digest, Gate, Outlet, Path, Said, Start
+from .history import PackageState
+from .match import SAME, OutletAt, Renames, StatementPlace, asked, matched, matched_outlets
+from .statements import Gate, Outlet, PackageStatements, Path, Said, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
 KINDS: tuple[Kind, ...] = ("tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed")
@@ -28,7 +28,7 @@ _ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
 _DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
 
 
-class Reached(msgspec.Struct, frozen=True):
+class ReachedSubscriber(msgspec.Struct, frozen=True):
     """A subscriber that a change reaches."""
 
     package: str
@@ -39,7 +39,7 @@ class Reached(msgspec.Struct, frozen=True):
     line: int
 
 
-class Change(msgspec.Struct, frozen=True):
+class LogicChange(msgspec.Struct, frozen=True):
     """A change of the logic of publishing.
 
     path, line: of the publish statement (or the publisher, where its queue or topic changed) in the commit; in its
@@ -61,18 +61,18 @@ class Change(msgspec.Struct, frozen=True):
     old: str | None
     new: str | None
     why: str
-    reaches: tuple[Reached, ...] = ()
+    reaches: tuple[ReachedSubscriber, ...] = ()
     unreachable: bool = False
 
 
 class Side(NamedTuple):
     """The packages of a revision that differ from the other one's, with their digests."""
 
-    packages: Sequence[tuple[State, Digest]]
+    packages: Sequence[tuple[PackageState, PackageStatements]]
 
-    def statements(self) -> list[At]:
+    def statements(self) -> list[StatementPlace]:
         """All publish statements."""
-        return [At(s.name, d, said, s.whole(said.path)) for s, d in self.packages for said in d.statements]
+        return [StatementPlace(s.name, d, said, s.whole(said.path)) for s, d in self.packages for said in d.statements]
 
     def outlets(self) -> list[OutletAt]:
         """All publishers."""
@@ -102,7 +102,7 @@ def _stamps(side: Side) -> tuple[list[str], list[str]]:
     return sorted(statements), sorted(outlets)
 
 
-def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
+def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange]:
     """All changes, rewordings included. names: what is called otherwise."""
     before, after = old.statements(), new.statements()
     pairs, gone, come = matched(before, after, names)
@@ -123,7 +123,7 @@ def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
             yield from _outlet_changes(one, other, at)
 
 
-def _unclear(at: At, names: Names, other: Side, backwards: Names = SAME) -> bool:
+def _unclear(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
     """Whether the other side has the call where the statement stood, and only does not tell that it publishes."""
     variable = tail(names.text(at.said.variable))
     return any(
@@ -134,11 +134,13 @@ def _unclear(at: At, names: Names, other: Side, backwards: Names = SAME) -> bool
     )
 
 
-def _change(kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str) -> Change:
+def _change(
+    kind: Kind, at: StatementPlace, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str
+) -> LogicChange:
     said = at.said
     topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
     near = ", ".join(sorted(at.topics)) or said.variable
-    return Change(
+    return LogicChange(
         kind,
         at.package,
         at.path,
@@ -157,7 +159,9 @@ def _change(kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new:
 # A statement
 
 
-def _compared(one: At, other: At, names: Names, successors: Mapping[int, Outlet]) -> Iterator[Change]:
+def _compared(
+    one: StatementPlace, other: StatementPlace, names: Renames, successors: Mapping[int, Outlet]
+) -> Iterator[LogicChange]:
     outlets = [*other.outlets, *one.outlets]
     heirs = {id(successors[id(outlet)]) for outlet in one.outlets if id(outlet) in successors}
     moved = one.topics and other.topics and not one.topics & other.topics
@@ -231,7 +235,7 @@ def _never(said: Said) -> str:
 
 
 def _contradicts(gates: Sequence[Gate], speech: guards.Language) -> bool:
-    return guards.impossible(_guards([Path(Start("unknown"), tuple(gates))])[0], speech)
+    return guards.impossible(_guards([Path(StatementStart("unknown"), tuple(gates))])[0], speech)
 
 
 def _cut_off(said: Said) -> bool:
@@ -241,7 +245,7 @@ def _cut_off(said: Said) -> bool:
 def _own(said: Said) -> list[Path]:
     """The one way through a statement's own function."""
     gates = tuple(gate for gate in said.ways[0].gates if gate.of == said.function)
-    return [Path(Start("unknown"), gates)]
+    return [Path(StatementStart("unknown"), gates)]
 
 
 def _together(kinds: Iterable[guards.Kind]) -> guards.Kind:
@@ -251,13 +255,13 @@ def _together(kinds: Iterable[guards.Kind]) -> guards.Kind:
     return found.pop() if len(found) == 1 else "changed"
 
 
-def _verdict(old: Sequence[Path], new: Sequence[Path], names: Names, language: str) -> tuple[guards.Kind, str]:
+def _verdict(old: Sequence[Path], new: Sequence[Path], names: Renames, language: str) -> tuple[guards.Kind, str]:
     """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
     conditions first; where that is more than can be compared, what is written decides."""
     speech: guards.Language = "python" if language == "python" else "cpp"
     meant_old, meant_new = _guards(old, meant=True), _guards(new, meant=True)
     written_old, written_new = _guards(old), _guards(new)
-    reading = guards.Reading(names.words, speech)
+    reading = guards.NameReading(names.words, speech)
     kind = guards.compare_ways(meant_old, meant_new, reading)
     told = (meant_old, meant_new)
     if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
@@ -277,7 +281,7 @@ def _guards(ways: Iterable[Path], meant: bool = False) -> Ways:
     )
 
 
-def _about(ways: Ways, names: Names) -> set[tuple[str, ...]]:
+def _about(ways: Ways, names: Renames) -> set[tuple[str, ...]]:
     """What the conditions of some ways are about: variables and operators, without what is called of them."""
     return {
         tuple(
@@ -293,7 +297,9 @@ def _about(ways: Ways, names: Names) -> set[tuple[str, ...]]:
 # What makes it run
 
 
-def _starts_of(first: Said, second: Said, names: Names) -> Iterator[tuple[frozenset[Start], frozenset[Start]]]:
+def _starts_of(
+    first: Said, second: Said, names: Renames
+) -> Iterator[tuple[frozenset[StatementStart], frozenset[StatementStart]]]:
     """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""
     if all(way.start.kind in _UNLED for way in first.ways) != all(way.start.kind in _UNLED for way in second.ways):
         # What leads to it is seen on one side alone: then it is not compared.
@@ -316,8 +322,8 @@ def _starts_of(first: Said, second: Said, names: Names) -> Iterator[tuple[frozen
         yield frozenset(), frozenset(starts)
 
 
-def _grouped(said: Said, names: Names) -> dict[tuple[str, str], set[Start]]:
-    found: dict[tuple[str, str], set[Start]] = {}
+def _grouped(said: Said, names: Renames) -> dict[tuple[str, str], set[StatementStart]]:
+    found: dict[tuple[str, str], set[StatementStart]] = {}
     for way in said.ways:
         kind = "unknown" if way.start.kind in _UNSAID else way.start.kind
         found.setdefault((kind, _plain(names.text(way.start.detail))), set()).add(way.start)
@@ -343,7 +349,7 @@ def _unnamed(ways: Sequence[Path]) -> str:
     return f"`{of}`" if of else "another caller"
 
 
-def _start_differs(old: Start, new: Start, names: Names) -> str:
+def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> str:
     if old.kind == new.kind:
         if old.kind in _UNSAID or _plain(names.text(old.detail)) == _plain(new.detail):
             return ""
@@ -355,7 +361,7 @@ def _start_differs(old: Start, new: Start, names: Names) -> str:
     return f"on {_named(new)}, was on {_named(old)}"
 
 
-def _named(start: Start) -> str:
+def _named(start: StatementStart) -> str:
     kind = {"start": "the start", "subscriber": "messages of", "thread": "loop"}.get(start.kind, start.kind)
     return f"{kind} `{start.detail}`" if start.detail else kind
 
@@ -363,11 +369,11 @@ def _named(start: Start) -> str:
 # A publisher
 
 
-def _outlet_changes(one: OutletAt, other: OutletAt, at: At) -> Iterator[Change]:
+def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iterator[LogicChange]:
     old, new = one.outlet, other.outlet
     both = [new, old]
 
-    def change(kind: Kind, was: str, is_now: str, why: str) -> Change:
+    def change(kind: Kind, was: str, is_now: str, why: str) -> LogicChange:
         found = _change(kind, at, both, was, is_now, why)
         return msgspec.structs.replace(found, path=other.path, line=new.line, function=new.function)
 

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from ..facts.flow import FlowFile, Function
+from ..facts.flow import FlowFile, FlowFunction
 from .guards import Language
 from .match import bare
 
@@ -55,8 +55,8 @@ def changed_functions(
 
 
 def _codes(
-    functions: Iterable[Function], lines: list[str], language: Language
-) -> Iterator[tuple[str, Function, tuple[str, ...]]]:
+    functions: Iterable[FlowFunction], lines: list[str], language: Language
+) -> Iterator[tuple[str, FlowFunction, tuple[str, ...]]]:
     """(name without places, function, its tokens without those of functions inside it)."""
     every = list(functions)
     for function in every:

@@ -14,8 +14,8 @@ from .guard_terms import (
     LONGEST,
     NULL,
     TRUE,
-    Piece,
-    Reading,
+    Conjunct,
+    GuardReading,
     Term,
     comparison,
     join,
@@ -49,14 +49,14 @@ def _parser() -> Any:
     return Parser(Language(tree_sitter_cpp.language()))
 
 
-def condition(text: str, holds: bool) -> Reading:
+def condition(text: str, holds: bool) -> GuardReading:
     """What a condition says when it holds, or when it does not."""
     text = text.strip()
     text = text.removeprefix("constexpr ")
     reader = _Reader(text)
     node = reader.clause()
     if node is None:
-        return Reading((opaque_piece(text, holds),))
+        return GuardReading((opaque_piece(text, holds),))
     return reading(reader.pieces(node, holds), reader.names)
 
 
@@ -67,7 +67,7 @@ def expression(text: str) -> Term:
     return opaque(text) if node is None else reader.term(node, 0)
 
 
-def directive(text: str, holds: bool) -> Reading:
+def directive(text: str, holds: bool) -> GuardReading:
     """What the condition of an #if says."""
     text = _DEFINED.sub(r"defined(\1)", text)
     if "__has_include" in text:
@@ -85,12 +85,12 @@ def caught(declared: str) -> Term:
     return Term("opaque", f"catch {match[1] if match else ' '.join(declared.split())}")
 
 
-def opaque_piece(text: str, holds: bool) -> Piece:
+def opaque_piece(text: str, holds: bool) -> Conjunct:
     term = opaque(text)
-    return Piece(text if holds else f"!({text})", term if holds else negation(term))
+    return Conjunct(text if holds else f"!({text})", term if holds else negation(term))
 
 
-def loop(head: str) -> Reading:
+def loop(head: str) -> GuardReading:
     """What the head of a range-for says: that there is an element."""
     inside = head.strip()
     match = re.match(r"for\s*\((.*)\)$", inside, re.DOTALL)
@@ -101,7 +101,7 @@ def loop(head: str) -> Reading:
     if split is None or variable is None:
         match = re.match(r"\w+\s*\(\s*(?:.*[\s&*])?([A-Za-z_]\w*)\s*,(.*)\)$", head.strip(), re.DOTALL)
         if match is None:
-            return Reading((Piece(head, opaque(head)),))
+            return GuardReading((Conjunct(head, opaque(head)),))
         bound, walked = [match[1]], match[2]
     else:
         bound, walked = re.findall(r"\w+", variable[1]), inside[split.end() :]
@@ -110,7 +110,7 @@ def loop(head: str) -> Reading:
     names = (
         [(bound[0], element)] if len(bound) == 1 else [(name, member(element, f"{i}")) for i, name in enumerate(bound)]
     )
-    return Reading((Piece(f"for ({head})" if match is None else head, element),), tuple(names))
+    return GuardReading((Conjunct(f"for ({head})" if match is None else head, element),), tuple(names))
 
 
 class _Reader:
@@ -187,9 +187,9 @@ class _Reader:
         operands.append(node)
         return operands[::-1], operators[::-1]
 
-    def pieces(self, node: Any, holds: bool) -> list[Piece]:
+    def pieces(self, node: Any, holds: bool) -> list[Conjunct]:
         """What must hold, one after the other, for the condition to hold (or not to)."""
-        result: list[Piece] = []
+        result: list[Conjunct] = []
         waiting = [(node, holds)]
         while waiting:
             node, holds = waiting.pop()
@@ -201,7 +201,7 @@ class _Reader:
                 waiting.append((node.child_by_field_name("left"), holds))
             else:
                 term = self.term(node, 0)
-                result.append(Piece(self.worded(node, holds), term if holds else negation(term)))
+                result.append(Conjunct(self.worded(node, holds), term if holds else negation(term)))
         return result
 
     def worded(self, node: Any, holds: bool) -> str:

@@ -14,8 +14,8 @@ from .guard_terms import (
     LONGEST,
     NULL,
     TRUE,
-    Piece,
-    Reading,
+    Conjunct,
+    GuardReading,
     Term,
     comparison,
     join,
@@ -41,12 +41,12 @@ _OPERATORS = {
 _MOST_MEMBERS = 50
 
 
-def condition(text: str, holds: bool) -> Reading:
+def condition(text: str, holds: bool) -> GuardReading:
     """What a condition says when it holds, or when it does not."""
     reader = _Reader()
     node = parsed(text)
     if node is None:
-        return Reading((opaque_piece(text, holds),))
+        return GuardReading((opaque_piece(text, holds),))
     return reading(reader.pieces(node, holds), reader.names)
 
 
@@ -60,9 +60,9 @@ def opaque(text: str) -> Term:
     return Term("opaque", " ".join(text.split()))
 
 
-def opaque_piece(text: str, holds: bool) -> Piece:
+def opaque_piece(text: str, holds: bool) -> Conjunct:
     term = opaque(text)
-    return Piece(text if holds else f"not ({text})", term if holds else negation(term))
+    return Conjunct(text if holds else f"not ({text})", term if holds else negation(term))
 
 
 def parsed(text: str) -> ast.expr | None:
@@ -79,17 +79,17 @@ def parsed(text: str) -> ast.expr | None:
     return None
 
 
-def loop(head: str) -> Reading:
+def loop(head: str) -> GuardReading:
     """What the head of a `for` says: that there is an element."""
     inside = re.sub(r"^\s*(?:async\s+)?for\s+|:\s*$", "", head).strip()
     try:
         statement = ast.parse(f"for {inside}: pass").body[0]
     except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
-        return Reading((Piece(head, opaque(head)),))
+        return GuardReading((Conjunct(head, opaque(head)),))
     if not isinstance(statement, ast.For) or len(inside) > LONGEST:
-        return Reading((Piece(head, opaque(head)),))
+        return GuardReading((Conjunct(head, opaque(head)),))
     element = Term("each", "", (_Reader().term(statement.iter, 0),))
-    return Reading((Piece(f"for {inside}", element),), tuple(_unpacked(statement.target, element)))
+    return GuardReading((Conjunct(f"for {inside}", element),), tuple(_unpacked(statement.target, element)))
 
 
 def _unpacked(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
@@ -101,17 +101,17 @@ def _unpacked(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
     return []
 
 
-def matched(subject: Term, pattern: str) -> Reading:
+def matched(subject: Term, pattern: str) -> GuardReading:
     """What `case pattern` says of a subject."""
     try:
         statement = ast.parse(f"match _:\n case {pattern}: pass").body[0]
     except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
-        return Reading((Piece("", comparison("==", subject, opaque(pattern))),))
+        return GuardReading((Conjunct("", comparison("==", subject, opaque(pattern))),))
     if not isinstance(statement, ast.Match) or len(statement.cases) != 1 or statement.cases[0].guard:
-        return Reading((Piece("", comparison("==", subject, opaque(pattern))),))
+        return GuardReading((Conjunct("", comparison("==", subject, opaque(pattern))),))
     names: list[tuple[str, Term]] = []
     term = _pattern(subject, statement.cases[0].pattern, names, 0)
-    return Reading((Piece("", term),), tuple(names))
+    return GuardReading((Conjunct("", term),), tuple(names))
 
 
 def _pattern(subject: Term, pattern: ast.pattern, names: list[tuple[str, Term]], depth: int) -> Term:
@@ -150,9 +150,9 @@ class _Reader:
         except (RecursionError, ValueError):
             return opaque("too deep")
 
-    def pieces(self, node: ast.expr, holds: bool) -> list[Piece]:
+    def pieces(self, node: ast.expr, holds: bool) -> list[Conjunct]:
         """What must hold, one after the other, for the condition to hold (or not to)."""
-        result: list[Piece] = []
+        result: list[Conjunct] = []
         waiting = [(node, holds)]
         while waiting:
             node, holds = waiting.pop()
@@ -162,7 +162,7 @@ class _Reader:
                 waiting.extend((part, holds) for part in reversed(node.values))
             else:
                 term = self.term(node, 0)
-                result.append(Piece(self.worded(node, holds), term if holds else negation(term)))
+                result.append(Conjunct(self.worded(node, holds), term if holds else negation(term)))
         return result
 
     def worded(self, node: ast.expr, holds: bool) -> str:

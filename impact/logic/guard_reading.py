@@ -9,7 +9,19 @@ from typing import Literal
 
 from ..model.flow.graph import GuardAt
 from . import guard_cpp, guard_python
-from .guard_terms import FALSE, Piece, Reading, Term, define, join, names_in, negation, rebuilt, renamed, substituted
+from .guard_terms import (
+    FALSE,
+    Conjunct,
+    GuardReading,
+    Term,
+    define,
+    join,
+    names_in,
+    negation,
+    rebuilt,
+    renamed,
+    substituted,
+)
 
 Language = Literal["cpp", "python"]
 
@@ -23,10 +35,10 @@ def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
     return "cpp"
 
 
-def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Piece, ...]:
+def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Conjunct, ...]:
     """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
     stand for."""
-    result: list[Piece] = []
+    result: list[Conjunct] = []
     names: dict[str, dict[str, Term]] = {}
     for place, guard in enumerate(way):
         known = names.setdefault(guard.of, {})
@@ -36,13 +48,13 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, 
             if renames:
                 term = renamed(term, renames)
             if term.kind != "true":
-                result.append(Piece(piece.text, term, place))
+                result.append(Conjunct(piece.text, term, place))
         for name, value in reading.names:
             define(known, name, value)
     return tuple(result)
 
 
-def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tuple[Piece, ...], ...], ...]:
+def this_left_out(sides: Sequence[Sequence[Sequence[Conjunct]]]) -> tuple[tuple[tuple[Conjunct, ...], ...], ...]:
     """C++ sides (of ways, of pieces) with `this->x` as `x`, unless one side has both."""
     for side in sides:
         named = {name for way in side for piece in way for name in names_in(piece.term)}
@@ -63,14 +75,14 @@ def _bare(term: Term) -> Term:
 
 
 @lru_cache(16384)
-def read(language: Language, kind: str, text: str) -> Reading:
+def read(language: Language, kind: str, text: str) -> GuardReading:
     """One guard by itself; kind and text as in facts."""
     reader = guard_cpp if language == "cpp" else guard_python
     if kind in ("if", "while"):
         return reader.condition(text, True)
     if kind == "unless":
         if re.match(r"(?:catch|except)\b", text):
-            return Reading((Piece(f"no {text}", negation(_caught(text))),))
+            return GuardReading((Conjunct(f"no {text}", negation(_caught(text))),))
         return reader.condition(text, False)
     if kind == "cpp":
         return guard_cpp.directive(text, True)
@@ -80,12 +92,12 @@ def read(language: Language, kind: str, text: str) -> Reading:
         return reader.loop(text)
     if kind in ("do", "with"):
         # What runs once at least, or inside a context, runs under no condition.
-        return Reading()
+        return GuardReading()
     if kind == "never":
-        return Reading((Piece(f"never: {text}", FALSE),))
+        return GuardReading((Conjunct(f"never: {text}", FALSE),))
     if kind == "catch":
-        return Reading((Piece(f"catch ({text})", _caught(text)),))
-    return Reading((Piece(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
+        return GuardReading((Conjunct(f"catch ({text})", _caught(text)),))
+    return GuardReading((Conjunct(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
 
 
 def _caught(text: str) -> Term:
@@ -95,7 +107,7 @@ def _caught(text: str) -> Term:
     return guard_cpp.caught(re.sub(r"\s+as\s+\w+$", "", inside.strip()))
 
 
-def case(language: Language, text: str) -> Reading:
+def case(language: Language, text: str) -> GuardReading:
     """`subject == a or b` or `subject other than a, b`."""
     subject, other, values = text.partition(" other than ")
     if other:
@@ -117,9 +129,9 @@ def case(language: Language, text: str) -> Reading:
         else:
             alternatives.append(_case_value(asked, value))
     if not alternatives:
-        return Reading()
+        return GuardReading()
     term = join("or", alternatives)
-    return Reading((Piece(text, negation(term) if other else term),), () if other else names)
+    return GuardReading((Conjunct(text, negation(term) if other else term),), () if other else names)
 
 
 def _case_value(subject: Term, value: str) -> Term:

@@ -36,7 +36,7 @@ class Term(NamedTuple):
     parts: tuple[Term, ...] = ()
 
 
-class Piece(NamedTuple):
+class Conjunct(NamedTuple):
     """One of the conditions that must all hold. text: as a person would write it; term: what it says; guard: the place
     of the guard it comes from."""
 
@@ -45,11 +45,11 @@ class Piece(NamedTuple):
     guard: int = 0
 
 
-class Reading(NamedTuple):
+class GuardReading(NamedTuple):
     """What a guard says. names: variables that it makes (`if (auto p = f())`, `for x in xs`), with what they stand for
     in the guards further in."""
 
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[Conjunct, ...] = ()
     names: tuple[tuple[str, Term], ...] = ()
 
 
@@ -185,14 +185,16 @@ def _weight(term: Term) -> int:
     return 1 + sum(map(_weight, term.parts))
 
 
-def reading(pieces: Iterable[Piece], names: Iterable[tuple[str, Term]]) -> Reading:
+def reading(pieces: Iterable[Conjunct], names: Iterable[tuple[str, Term]]) -> GuardReading:
     """A condition with the variables that it makes put back into what they stand for."""
     known: dict[str, Term] = {}
     for name, value in names:
         define(known, name, value)
     if not known:
-        return Reading(tuple(pieces))
-    return Reading(tuple(piece._replace(term=substituted(piece.term, known)) for piece in pieces), tuple(known.items()))
+        return GuardReading(tuple(pieces))
+    return GuardReading(
+        tuple(piece._replace(term=substituted(piece.term, known)) for piece in pieces), tuple(known.items())
+    )
 
 
 def names_in(term: Term) -> Iterable[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import takewhile
 
-from .guard_terms import Piece, Term, names_in
+from .guard_terms import Conjunct, Term, names_in
 
 _LONGEST = 100
 _MOST = 4
@@ -13,11 +13,11 @@ _MOST_WAYS = 3
 _AROUND = 3
 _BLOCKS = ("macro ", "catch ")
 
-Asked = Callable[[Sequence[Piece], Piece], bool]
+Asked = Callable[[Sequence[Conjunct], Conjunct], bool]
 """Whether some pieces together already ask for another."""
 
 
-def words(before: Sequence[Piece], after: Sequence[Piece], asked: Asked) -> str:
+def words(before: Sequence[Conjunct], after: Sequence[Conjunct], asked: Asked) -> str:
     """One clause about two conjunctions; empty when there is nothing to tell. asked: see Asked."""
     removed, added = _without(before, after), _without(after, before)
     clauses: list[str] = []
@@ -44,7 +44,7 @@ def words(before: Sequence[Piece], after: Sequence[Piece], asked: Asked) -> str:
     return ", ".join(clauses)
 
 
-def words_of_ways(before: Sequence[Sequence[Piece]], after: Sequence[Sequence[Piece]], asked: Asked) -> str:
+def words_of_ways(before: Sequence[Sequence[Conjunct]], after: Sequence[Sequence[Conjunct]], asked: Asked) -> str:
     """One clause about ways that lead to a statement."""
     old_ways, new_ways = {_terms(way) for way in before}, {_terms(way) for way in after}
     removed = [way for way in before if _terms(way) not in new_ways]
@@ -67,18 +67,18 @@ def words_of_ways(before: Sequence[Sequence[Piece]], after: Sequence[Sequence[Pi
     return ", ".join(clauses)
 
 
-def _those(way: Sequence[Piece], terms: frozenset[Term]) -> list[Piece]:
+def _those(way: Sequence[Conjunct], terms: frozenset[Term]) -> list[Conjunct]:
     return [piece for piece in way if piece.term in terms]
 
 
-def _either(ways: Sequence[Sequence[Piece]]) -> str:
+def _either(ways: Sequence[Sequence[Conjunct]]) -> str:
     listed = list(dict.fromkeys(_listed(way) for way in ways))
     if len(listed) > _MOST:
         listed = [*listed[: _MOST - 1], f"{len(listed) - _MOST + 1} more"]
     return ", or ".join(listed) if any(len(way) > 1 for way in ways) else " or ".join(listed)
 
 
-def _each_once(verb: str, ways: Sequence[Sequence[Piece]]) -> list[str]:
+def _each_once(verb: str, ways: Sequence[Sequence[Conjunct]]) -> list[str]:
     """Clauses about ways; of many the first, and how many more there are."""
     said = list(dict.fromkeys(f"{verb} {_when(way)}" for way in ways))
     if len(said) > _MOST_WAYS:
@@ -86,18 +86,18 @@ def _each_once(verb: str, ways: Sequence[Sequence[Piece]]) -> list[str]:
     return said
 
 
-def _when(way: Sequence[Piece]) -> str:
+def _when(way: Sequence[Conjunct]) -> str:
     return f"when {_listed(way)}" if way else "without any condition"
 
 
-def _terms(way: Sequence[Piece]) -> frozenset[Term]:
+def _terms(way: Sequence[Conjunct]) -> frozenset[Term]:
     return frozenset(piece.term for piece in way)
 
 
-def _without(pieces: Sequence[Piece], others: Sequence[Piece]) -> list[Piece]:
+def _without(pieces: Sequence[Conjunct], others: Sequence[Conjunct]) -> list[Conjunct]:
     """The pieces that the others have not, each once."""
     known = {piece.term for piece in others}
-    result: list[Piece] = []
+    result: list[Conjunct] = []
     for piece in pieces:
         if piece.term not in known:
             known.add(piece.term)
@@ -105,7 +105,7 @@ def _without(pieces: Sequence[Piece], others: Sequence[Piece]) -> list[Piece]:
     return result
 
 
-def _instead(old: Piece, new: Piece) -> str:
+def _instead(old: Conjunct, new: Conjunct) -> str:
     """What one condition became; of long ones the part that differs, with a few words around it."""
     was, now = old.text.split(" "), new.text.split(" ")
     if max(len(old.text), len(new.text)) > _LONGEST:
@@ -142,19 +142,19 @@ def _kind(term: Term) -> str:
     return term.parts[0].kind if term.kind == "not" else term.kind
 
 
-def _is_block(piece: Piece) -> bool:
+def _is_block(piece: Conjunct) -> bool:
     term = piece.term
     return term.kind == "each" or (term.kind == "opaque" and term.text.startswith(_BLOCKS))
 
 
-def _listed(pieces: Sequence[Piece]) -> str:
+def _listed(pieces: Sequence[Conjunct]) -> str:
     quoted = list(dict.fromkeys(_quoted(piece) for piece in pieces))
     if len(quoted) > _MOST:
         quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
     return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])
 
 
-def _quoted(piece: Piece) -> str:
+def _quoted(piece: Conjunct) -> str:
     return _shown(piece.text)
 
 

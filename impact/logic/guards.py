@@ -16,19 +16,19 @@ from typing import Literal, NamedTuple
 from ..model.flow.graph import GuardAt
 from .guard_reading import Language, language_of, pieces_of, this_left_out
 from .guard_solver import Solver, Undecided
-from .guard_terms import FALSE, TRUE, Piece, Term, join
+from .guard_terms import FALSE, TRUE, Conjunct, Term, join
 from .guard_words import words_of_ways
 
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
 Ways = Sequence[Guards]
-_Side = tuple[tuple[Piece, ...], ...]
+_Side = tuple[tuple[Conjunct, ...], ...]
 
 MILLISECONDS = 100
 _NOTHING: Mapping[str, str] = {}
 
 
-class Reading(NamedTuple):
+class NameReading(NamedTuple):
     """How the names in two conditions are to be understood.
 
     renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
@@ -41,15 +41,15 @@ class Reading(NamedTuple):
     milliseconds: int = MILLISECONDS
 
 
-AS_WRITTEN = Reading()
+AS_WRITTEN = NameReading()
 
 
-def compare(old: Guards, new: Guards, reading: Reading = AS_WRITTEN) -> Kind:
+def compare(old: Guards, new: Guards, reading: NameReading = AS_WRITTEN) -> Kind:
     """What happened to the guards of one statement, outermost first; `changed` when the time was not enough."""
     return compare_ways((old,), (new,), reading)
 
 
-def compare_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> Kind:
+def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kind:
     """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
     if not reading.renames and _written(old) == _written(new):
         return "equivalent"
@@ -69,19 +69,19 @@ def compare_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> Kind:
     return "widened" if backward and forward is False else "changed"
 
 
-def explain(old: Guards, new: Guards, reading: Reading = AS_WRITTEN) -> str:
+def explain(old: Guards, new: Guards, reading: NameReading = AS_WRITTEN) -> str:
     """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
     return explain_ways((old,), (new,), reading)
 
 
-def explain_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> str:
+def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str:
     """As explain(), for a statement that several ways lead to."""
     if compare_ways(old, new, reading) == "equivalent":
         return ""
     before, after, solver = _sides(old, new, reading)
 
-    def asked(pieces: Sequence[Piece], piece: Piece) -> bool:
+    def asked(pieces: Sequence[Conjunct], piece: Conjunct) -> bool:
         try:
             forward, _, possible = solver().relation(piece.term, _all_of(pieces))
         except Undecided:
@@ -106,7 +106,7 @@ def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
 
-def _sides(old: Ways, new: Ways, reading: Reading) -> tuple[_Side, _Side, Callable[[], Solver]]:
+def _sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Side, Callable[[], Solver]]:
     """Both sides as terms, and what makes a solver for them."""
     language = reading.language or language_of((*old, *new))
     before = tuple(pieces_of(way, language, reading.renames) for way in old)
@@ -141,7 +141,7 @@ def _as_it_is(term: Term) -> Term:
     return term
 
 
-def _all_of(pieces: Sequence[Piece], seen=_as_it_is) -> Term:
+def _all_of(pieces: Sequence[Conjunct], seen=_as_it_is) -> Term:
     return join("and", [seen(piece.term) for piece in pieces]) if pieces else TRUE
 
 

@@ -36,7 +36,7 @@ class Commit(NamedTuple):
     summary: str
 
 
-class File(NamedTuple):
+class PackageFile(NamedTuple):
     """A file of a package. path: relative to the package; kind: `cpp`, `python`, `cmake` or `setup_py`."""
 
     path: str
@@ -44,7 +44,7 @@ class File(NamedTuple):
     kind: str
 
 
-class State(NamedTuple):
+class PackageState(NamedTuple):
     """A package as one commit has it. path: of its folder in the repository; ros: the generation its manifest is
     written for. files: those that tell of the flow of messages, tests left out. key: the same for packages of one name
     and generation that hold the same files, wherever they lie."""
@@ -52,7 +52,7 @@ class State(NamedTuple):
     name: str
     path: str
     ros: int
-    files: tuple[File, ...]
+    files: tuple[PackageFile, ...]
     key: bytes
 
     def whole(self, path: str) -> str:
@@ -69,7 +69,7 @@ class _Found(NamedTuple):
     rosbuild: bool
 
 
-class History:
+class CommitHistory:
     """The commits of a repository.
 
     repository: it, or a folder in it: then only the packages below that folder are looked at. Raises TreeError when
@@ -83,11 +83,11 @@ class History:
         self.name = self.tree.name
         self.folder = _below(os.fsdecode(repository), self.repo)
         self._packages: dict[Any, tuple[_Found, ...]] = {}
-        self._files: dict[tuple[Any, bool], tuple[File, ...]] = {}
+        self._files: dict[tuple[Any, bool], tuple[PackageFile, ...]] = {}
         self._manifests: dict[Any, tuple[str, int]] = {}
         self._scripts: dict[Any, bool] = {}
-        self._keys: dict[tuple[Any, str, int], tuple[tuple[File, ...], bytes]] = {}
-        self._roots: dict[str, dict[str, State]] = {}
+        self._keys: dict[tuple[Any, str, int], tuple[tuple[PackageFile, ...], bytes]] = {}
+        self._roots: dict[str, dict[str, PackageState]] = {}
 
     # Commits
 
@@ -137,7 +137,7 @@ class History:
 
     # Packages
 
-    def packages(self, commit: str) -> Mapping[str, State]:
+    def packages(self, commit: str) -> Mapping[str, PackageState]:
         """The packages of a commit by their names; of several with one name, those after the first by name and path.
 
         Packages are catkin's, ament's and rosbuild's, told by their manifests. None for the parent of a first commit.
@@ -180,18 +180,18 @@ class History:
         except OSError:
             return ()
 
-    def _states(self, root) -> Iterator[tuple[str, State]]:
+    def _states(self, root) -> Iterator[tuple[str, PackageState]]:
         seen: set[str] = set()
         for found in self._found(root) if root is not None else ():
             path = _joined(self.folder, found.path)
             name, ros = self._manifest(found.manifest, found.rosbuild)
             name = name or path.rpartition("/")[2] or self.name
             files, key = self._content(found, name, ros)
-            state = State(name, path, ros, files, key)
+            state = PackageState(name, path, ros, files, key)
             yield (name if name not in seen else f"{name} in {path}"), state
             seen.add(name)
 
-    def _content(self, found: _Found, name: str, ros: int) -> tuple[tuple[File, ...], bytes]:
+    def _content(self, found: _Found, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
         asked = (found.folder, name, ros)
         known = self._keys.get(asked)
         if known is None:
@@ -240,13 +240,13 @@ class History:
             known = self._manifests[blob] = (name, ros)
         return known
 
-    def _listed(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[File, ...]:
+    def _listed(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[PackageFile, ...]:
         """The files of interest at and below a folder, packages below a rosbuild package left out. Raises KeyError
         where there are too many."""
         known = self._files.get((folder, rosbuild)) if not top else None
         if known is not None:
             return known
-        found: list[File] = []
+        found: list[PackageFile] = []
         items = self._list(folder) if level < limits().depth else ()
         for name, mode, item in items:
             if mode == _MODE_FOLDER:
@@ -260,7 +260,7 @@ class History:
                 if kind == "script" and not name.endswith(".cfg") and self._is_python(item):
                     kind = "python"
                 if kind in _WANTED:
-                    found.append(File(name, str(item), kind))
+                    found.append(PackageFile(name, str(item), kind))
         known = tuple(found)
         if not top:
             self._files[folder, rosbuild] = known
@@ -350,4 +350,4 @@ def _time(text: str) -> int:
     return int((when if when.tzinfo else when.replace(tzinfo=timezone.utc)).timestamp())
 
 
-__all__ = ["Commit", "File", "History", "State", "TreeError"]
+__all__ = ["Commit", "CommitHistory", "PackageFile", "PackageState", "TreeError"]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 from ..model.flow.code import around, tail
-from .statements import Digest, Outlet, Said
+from .statements import Outlet, PackageStatements, Said
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _ENOUGH = 9
@@ -15,11 +15,11 @@ _PLAIN: Mapping[str, str] = {}
 _T = TypeVar("_T")
 
 
-class At(NamedTuple):
+class StatementPlace(NamedTuple):
     """A statement with where it is: its package, the package's digest, and its path in the repository."""
 
     package: str
-    digest: Digest
+    digest: PackageStatements
     said: Said
     path: str
 
@@ -43,7 +43,7 @@ class OutletAt(NamedTuple):
     content: str
 
 
-class Names(NamedTuple):
+class Renames(NamedTuple):
     """What is called otherwise in the new revision. words: identifiers; files: paths of the repository."""
 
     words: Mapping[str, str] = _PLAIN
@@ -59,13 +59,15 @@ class Names(NamedTuple):
         return self.files.get(path, path)
 
 
-SAME = Names()
+SAME = Renames()
 
 
-def matched(old: Sequence[At], new: Sequence[At], names: Names) -> tuple[list[tuple[At, At]], list[At], list[At]]:
+def matched(
+    old: Sequence[StatementPlace], new: Sequence[StatementPlace], names: Renames
+) -> tuple[list[tuple[StatementPlace, StatementPlace]], list[StatementPlace], list[StatementPlace]]:
     """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
     most in common, unless that is too little."""
-    pairs: list[tuple[At, At]] = []
+    pairs: list[tuple[StatementPlace, StatementPlace]] = []
     for key in (_exact, _near):
         found, old, new = _equal(old, new, key, names)
         pairs += found
@@ -73,7 +75,9 @@ def matched(old: Sequence[At], new: Sequence[At], names: Names) -> tuple[list[tu
     return pairs + found, gone, come
 
 
-def matched_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Names) -> list[tuple[OutletAt, OutletAt]]:
+def matched_outlets(
+    old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames
+) -> list[tuple[OutletAt, OutletAt]]:
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
     pairs: list[tuple[OutletAt, OutletAt]] = []
     for key in (_outlet, _outlet_place):
@@ -84,7 +88,7 @@ def matched_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Nam
 
 
 def _equal(
-    old: Sequence[_T], new: Sequence[_T], key: Callable[[_T, Names], tuple], names: Names
+    old: Sequence[_T], new: Sequence[_T], key: Callable[[_T, Renames], tuple], names: Renames
 ) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
     """Pairs of one key, in their order; and what is left of both."""
     waiting: dict[tuple, list[_T]] = {}
@@ -125,7 +129,7 @@ def _closest(
     return pairs, gone, come
 
 
-def asked(said: Said, names: Names = SAME) -> frozenset[tuple]:
+def asked(said: Said, names: Renames = SAME) -> frozenset[tuple]:
     """All that decides when a statement runs, as written, in the words of the new revision."""
     return frozenset(
         (way.start.kind, names.text(way.start.detail), tuple((gate.kind, names.text(gate.text)) for gate in way.gates))
@@ -133,24 +137,24 @@ def asked(said: Said, names: Names = SAME) -> frozenset[tuple]:
     )
 
 
-def _place(at: At, names: Names) -> tuple:
+def _place(at: StatementPlace, names: Renames) -> tuple:
     said = at.said
     return names.path(at.path), names.text(bare(said.function)), names.text(tail(said.variable))
 
 
-def _exact(at: At, names: Names) -> tuple:
+def _exact(at: StatementPlace, names: Renames) -> tuple:
     return (*_near(at, names), asked(at.said, names))
 
 
-def _near(at: At, names: Names) -> tuple:
+def _near(at: StatementPlace, names: Renames) -> tuple:
     return (*_place(at, names), at.topics, names.text(at.said.expression))
 
 
-def _lines(one: At, other: At) -> int:
+def _lines(one: StatementPlace, other: StatementPlace) -> int:
     return abs(one.said.line - other.said.line)
 
 
-def _alike(one: At, other: At, names: Names) -> int:
+def _alike(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     """How much two statements have in common; too little where they publish on topics that are known to differ, unless
     they stand in one place."""
     first, second = one.said, other.said
@@ -183,16 +187,16 @@ def bare(function: str) -> str:
     return re.sub(r"lambda@[\d:]+", "lambda", function)
 
 
-def _outlet(at: OutletAt, names: Names) -> tuple:
+def _outlet(at: OutletAt, names: Renames) -> tuple:
     return (*_outlet_place(at, names), at.outlet.topic, at.outlet.type)
 
 
-def _outlet_place(at: OutletAt, names: Names) -> tuple:
+def _outlet_place(at: OutletAt, names: Renames) -> tuple:
     outlet = at.outlet
     return names.path(at.path), names.text(bare(outlet.function)), names.text(tail(outlet.variable)) or outlet.topic
 
 
-def _outlets_alike(one: OutletAt, other: OutletAt, names: Names) -> int:
+def _outlets_alike(one: OutletAt, other: OutletAt, names: Renames) -> int:
     first, second = one.outlet, other.outlet
     variable = names.text(tail(first.variable))
     score = 6 * (first.topic == second.topic and bool(first.topic))

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 
-from ..facts.flow import Expr
-from ..model.flow.code import Code, Fn
+from ..facts.flow import FlowExpr
+from ..model.flow.code import FlowCode, Fn
 from ..model.flow.graph import GuardAt
 
 _DEEPEST = 3
@@ -22,7 +22,7 @@ _PLAIN = re.compile(r"[\w.:]+(\(\))?")
 class Meaning:
     """Meanings of guards in a body of code."""
 
-    def __init__(self, code: Code):
+    def __init__(self, code: FlowCode):
         self.code = code
         self._known: dict[tuple[str, str, str], str] = {}
 
@@ -95,7 +95,7 @@ class Meaning:
             value = re.sub(rf"(?<![\w.>]){re.escape(parameter.name)}\b", lambda _, said=said: said, value)
         return value
 
-    def _written(self, value: Expr, fn: Fn, depth: int) -> str | None:
+    def _written(self, value: FlowExpr, fn: Fn, depth: int) -> str | None:
         """An expression as source in which names are put back too; None for one that decides nothing by itself."""
         if value.kind not in ("other", "call", "choice", "name"):
             return None
@@ -108,7 +108,7 @@ class Meaning:
         return text if _PLAIN.fullmatch(text) else f"({text})"
 
 
-def written(value: Expr, python: bool) -> str | None:
+def written(value: FlowExpr, python: bool) -> str | None:
     """An expression as source; None where that was cut off or is not known."""
     if value.kind == "other":
         return value.text if len(value.text) < _CUT else None

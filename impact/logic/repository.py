@@ -17,8 +17,8 @@ import msgspec
 from ...edges import processes
 from ..facts import kinds
 from ..facts.store import Store, encodable, fact_key, pack, unpack
-from .changes import Change, Reached, Side
-from .history import Commit, History, State
+from .changes import LogicChange, ReachedSubscriber, Side
+from .history import Commit, CommitHistory, PackageState
 from .statements import Before, kind_of_facts
 from .states import compared, decoded, digest_key, packed_digest, safe_digest, stamp, unread_digest
 
@@ -35,7 +35,7 @@ class Range(NamedTuple):
     since: str = ""
 
 
-class Coverage(msgspec.Struct, frozen=True):
+class LogicCoverage(msgspec.Struct, frozen=True):
     """commits: looked at; compared: those that changed C++ or Python of a package; cut_off: those whose parent is not
     in the repository. packages: at the newest commit. statements: publish statements there; unresolved: those of them
     whose topic is not known; unread: files there that were not read in full."""
@@ -55,14 +55,14 @@ class Logic(msgspec.Struct, frozen=True):
     repository: str
     range: str
     commits: tuple[Commit, ...]
-    changes: tuple[tuple[Commit, Change], ...]
-    coverage: Coverage
+    changes: tuple[tuple[Commit, LogicChange], ...]
+    coverage: LogicCoverage
 
 
 class _Result(msgspec.Struct, frozen=True, array_like=True):
     """A commit's changes as they are remembered. compared: whether any package changed."""
 
-    changes: tuple[Change, ...]
+    changes: tuple[LogicChange, ...]
     compared: bool = True
     cut_off: bool = False
 
@@ -75,7 +75,7 @@ def read(
     jobs: processes to use, all cores when None. progress: told what is done, how often, and how often in all. Raises
     TreeError for a repository or revision that is not there, ValueError for a date that cannot be read.
     """
-    history = History(repository)
+    history = CommitHistory(repository)
     commits = history.commits(range.text, range.number, range.since)
     run = _Run(history, store, jobs or processes.cores(), progress or _silent)
     results = run.results(commits)
@@ -112,7 +112,7 @@ def _range_text(range: Range) -> str:
 
 
 class _Run:
-    def __init__(self, history: History, store: Store, jobs: int, progress: Progress):
+    def __init__(self, history: CommitHistory, store: Store, jobs: int, progress: Progress):
         self.history, self.store, self.jobs, self.progress = history, store, jobs, progress
         self.digests = _Digests(store)
 
@@ -149,7 +149,7 @@ class _Run:
         self._digest([state for step in steps for state in (*step.old, *step.new)])
         yield from self._compare(steps)
 
-    def _digest(self, states: Iterable[State]) -> None:
+    def _digest(self, states: Iterable[PackageState]) -> None:
         """Makes the digests that are not there yet."""
         wanted = {state.key: state for state in states}
         known = self.digests.load(wanted)
@@ -167,7 +167,7 @@ class _Run:
     def _compare(self, steps: Sequence[_Step]) -> Iterator[tuple[str, _Result]]:
         chunks = [steps[start : start + _COMMITS_AT_ONCE] for start in range(0, len(steps), _COMMITS_AT_ONCE)]
         done = 0
-        compared: list[tuple[_Step, tuple[Change, ...]]] = []
+        compared: list[tuple[_Step, tuple[LogicChange, ...]]] = []
         known = self.digests.packed
         for chunk, found in processes.forked_rows(_compare_chunk, chunks, self.jobs, self.history.path, known):
             for step, row in zip(chunk, found, strict=True):
@@ -189,10 +189,10 @@ class _Run:
         self._remember(waiting)
         yield from waiting
 
-    def coverage(self, commits: Sequence[Commit], results: Mapping[str, _Result]) -> Coverage:
+    def coverage(self, commits: Sequence[Commit], results: Mapping[str, _Result]) -> LogicCoverage:
         """What was looked at, and what the newest commit's packages hold."""
         if not commits:
-            return Coverage()
+            return LogicCoverage()
         compared = sum(result.compared for result in results.values())
         cut_off = sum(result.cut_off for result in results.values())
         try:
@@ -207,15 +207,17 @@ class _Run:
             statements += len(one.statements)
             unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
             unread += [state.whole(path) for path in one.unread]
-        return Coverage(len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread)))
+        return LogicCoverage(
+            len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread))
+        )
 
-    def _listeners(self, commit: str) -> dict[str, list[Reached]]:
+    def _listeners(self, commit: str) -> dict[str, list[ReachedSubscriber]]:
         """The subscribers of a commit by their topics."""
-        found: dict[str, list[Reached]] = {}
+        found: dict[str, list[ReachedSubscriber]] = {}
         for state in self.history.packages(commit).values():
             for inlet in self.digests.inlets(state.key):
                 path = state.whole(inlet.path)
-                reached = Reached(state.name, inlet.node, inlet.topic, inlet.callback, path, inlet.line)
+                reached = ReachedSubscriber(state.name, inlet.node, inlet.topic, inlet.callback, path, inlet.line)
                 found.setdefault(inlet.topic, []).append(reached)
         return found
 
@@ -224,9 +226,9 @@ class _Run:
         self.store.remember("logic", encodable((_commit_key(commit, folder), row) for commit, row in rows))
 
 
-def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:
+def _reaching(change: LogicChange, listeners: Mapping[str, list[ReachedSubscriber]]) -> LogicChange:
     """The change with its subscribers, each once for all nodes that run it."""
-    found: dict[tuple[str, int, str], dict[Reached, None]] = {}
+    found: dict[tuple[str, int, str], dict[ReachedSubscriber, None]] = {}
     for topic in change.topics:
         for reached in listeners.get(topic, ()):
             found.setdefault((reached.path, reached.line, reached.callback), {})[reached] = None
@@ -248,11 +250,11 @@ class _Step(NamedTuple):
     """A commit with the packages that differ from its parent's."""
 
     commit: Commit
-    old: tuple[State, ...]
-    new: tuple[State, ...]
+    old: tuple[PackageState, ...]
+    new: tuple[PackageState, ...]
 
 
-def _step(history: History, commit: Commit) -> _Step | None:
+def _step(history: CommitHistory, commit: Commit) -> _Step | None:
     """None where no package differs. Raises KeyError when the parent is not in the repository."""
     if history.same_tree(commit.parent, commit.id):
         return None
@@ -266,18 +268,20 @@ def _step(history: History, commit: Commit) -> _Step | None:
     return step if differ else None
 
 
-def _compare_chunk(repository: str, digests: Mapping[bytes, bytes], steps: Sequence[_Step]) -> list[tuple[Change, ...]]:
-    history = History(repository)
+def _compare_chunk(
+    repository: str, digests: Mapping[bytes, bytes], steps: Sequence[_Step]
+) -> list[tuple[LogicChange, ...]]:
+    history = CommitHistory(repository)
     return [tuple(_compared(history, step, digests)) for step in steps]
 
 
-def _compared(history: History, step: _Step, digests: Mapping[bytes, bytes]) -> list[Change]:
+def _compared(history: CommitHistory, step: _Step, digests: Mapping[bytes, bytes]) -> list[LogicChange]:
     old = Side([(state, decoded(digests.get(state.key))) for state in step.old])
     new = Side([(state, decoded(digests.get(state.key))) for state in step.new])
     return compared(old, new, lambda: _renamed_files(history, step), lambda file: history.read(file.id))
 
 
-def _renamed_files(history: History, step: _Step) -> dict[str, str]:
+def _renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
     old = {state.whole(file.path) for state in step.old for file in state.files}
     new = {state.whole(file.path) for state in step.new for file in state.files}
     if not old - new or not new - old:
@@ -314,9 +318,9 @@ class _Digests:
         return known
 
 
-def _chunked(states: Iterable[State]) -> list[list[State]]:
+def _chunked(states: Iterable[PackageState]) -> list[list[PackageState]]:
     """States in pieces of one package each, in the order of time; the largest first."""
-    by_name: dict[str, list[State]] = {}
+    by_name: dict[str, list[PackageState]] = {}
     for state in states:
         by_name.setdefault(state.name, []).append(state)
     chunks = [
@@ -331,9 +335,9 @@ def _chunked(states: Iterable[State]) -> list[list[State]]:
 _JOIN_BYTES = 10_000_000
 
 
-def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list[tuple[bytes, bytes]]:
+def _digest_chunk(repository: str, folder: str, states: Sequence[PackageState]) -> list[tuple[bytes, bytes]]:
     """(key, packed digest) of states of one package. folder: of the store of facts."""
-    history = History(repository)
+    history = CommitHistory(repository)
     known: dict[tuple[str, str], Any] = {}
     rows: list[tuple[bytes, bytes]] = []
     before = Before()
@@ -348,7 +352,9 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list
     return rows
 
 
-def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) -> Iterator[tuple[tuple[str, str], Any]]:
+def _facts(
+    history: CommitHistory, store: Store, wanted: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[str, str], Any]]:
     """Facts of contents, from the store or made now."""
     rows = {fact_key(content, kinds.version_of(kind)): (content, kind) for content, kind in wanted}
     missing = dict(rows)

@@ -10,15 +10,15 @@ from typing import Any
 import msgspec
 
 from ..facts import kinds
-from ..facts.flow import Call, FlowFile
-from ..model.flow.code import Code, Fn, tail
+from ..facts.flow import FlowCall, FlowFile
+from ..model.flow.code import FlowCode, Fn, tail
 from ..model.flow.endpoints import Site, Statement, shown
 from ..model.flow.graph import GuardAt, Node, Trigger, Way
 from ..model.flow.join import Join, Owner
-from ..model.flow.nodes import Built
+from ..model.flow.nodes import BuiltPackage
 from ..model.flow.qos import qos_of
-from ..model.flow.values import Value
-from .history import File, State
+from ..model.flow.values import FlowValue
+from .history import PackageFile, PackageState
 from .meaning import Meaning, conjuncts
 
 _LIVE = frozenset(
@@ -45,7 +45,7 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     fixed: bool = False
 
 
-class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What makes a statement run. kind: as in Trigger, `loop` where a loop does that the start of a program leads to,
     `thread` for one that nothing leads to; detail: the period, topic or service, the rate of a loop."""
 
@@ -56,7 +56,7 @@ class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them."""
 
-    start: Start
+    start: StatementStart
     gates: tuple[Gate, ...] = ()
 
 
@@ -103,7 +103,7 @@ class Inlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
     line: int
 
 
-class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class PackageStatements(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package at one commit. unread: files that were not read, or not in full. unclear: path, function and callee of
     calls that may publish, of which it is not known."""
 
@@ -114,17 +114,17 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unclear: tuple[tuple[str, str, str], ...] = ()
 
 
-EMPTY = Digest()
+EMPTY = PackageStatements()
 
 
 class Before:
     """The code of the state that was digested last, for the next one of the same package."""
 
     def __init__(self) -> None:
-        self.code: Code | None = None
+        self.code: FlowCode | None = None
 
 
-def digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
+def digest(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> PackageStatements:
     """What a package says of publishing. facts: of each file of the state by its path: a FlowFile, CMakeFile or
     SetupFile; those of a file that did not change are the same objects. before: of neighbouring states, to be quick."""
     sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
@@ -133,7 +133,7 @@ def digest(state: State, facts: Mapping[str, Any], before: Before | None = None)
     join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros, before=last)
     before.code = join.code
     if not join.calls.uses:
-        return Digest(unread=_unread(join), unclear=_unclear(join))
+        return PackageStatements(unread=_unread(join), unclear=_unclear(join))
     return _Digester(join, state).digest()
 
 
@@ -153,7 +153,7 @@ def _unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
 
 
 class _Digester:
-    def __init__(self, join: Join, state: State):
+    def __init__(self, join: Join, state: PackageState):
         self.join, self.state = join, state
         self.running = join.running()
         self.meaning = Meaning(join.code)
@@ -167,7 +167,7 @@ class _Digester:
             if site.implied and site.role == "subscriber"
         }
 
-    def digest(self) -> Digest:
+    def digest(self) -> PackageStatements:
         join = self.join
         outlets: list[Outlet] = []
         places: dict[int, int] = {}
@@ -190,7 +190,9 @@ class _Digester:
                     outlets.append(self._outlet(site))
                 numbers.append(known[site])
             said.append(self._said(statement, tuple(dict.fromkeys(numbers))))
-        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join), _unclear(join))
+        return PackageStatements(
+            tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join), _unclear(join)
+        )
 
     def _owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if id(fn) in one.functions]
@@ -205,7 +207,7 @@ class _Digester:
     def _outlet(self, site: Site) -> Outlet:
         use = site.use
         full = tuple(dict.fromkeys(self._full(site)))
-        value = site.names[0] if len({value.text for value in site.names}) == 1 else Value(None)
+        value = site.names[0] if len({value.text for value in site.names}) == 1 else FlowValue(None)
         found = qos_of(self.join.calls, self.join.values, use)
         offers: list[tuple[str, str]] = []
         for name in found.__struct_fields__ if found is not None else ():
@@ -261,7 +263,7 @@ class _Digester:
         return trigger.kind == "subscriber" and (trigger.path, trigger.line) in self.implied
 
     def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
-        start = Start(trigger.kind, trigger.detail)
+        start = StatementStart(trigger.kind, trigger.detail)
         gates: list[Gate] = []
         for guard in guards:
             unsaid = trigger.kind in ("start", "unknown")
@@ -270,12 +272,12 @@ class _Digester:
                 asked, lives = "", True  # what stands in the loop's condition itself
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"
-                start = Start(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
+                start = StatementStart(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
             if asked:
                 meaning = self.meaning.of(guard) if asked == guard.text else ""
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
-            start = Start(start.kind)
+            start = StatementStart(start.kind)
         return Path(start, tuple(gates))
 
     def _is_fixed(self, guard: GuardAt) -> bool:
@@ -333,7 +335,7 @@ class _Digester:
                     return pace
         return ""
 
-    def _slept(self, call: Call, fn: Fn) -> str:
+    def _slept(self, call: FlowCall, fn: Fn) -> str:
         if call.arguments:
             return f"every {shown(call.arguments[0])}"
         receiver = call.callee.rpartition(".")[0]
@@ -351,7 +353,7 @@ class _Digester:
         return ""
 
 
-def _near(site: Site, value: Value) -> str:
+def _near(site: Site, value: FlowValue) -> str:
     """A topic as the node's code knows it, before the node's own name."""
     if value.text is None:
         return ""
@@ -379,7 +381,7 @@ def _is_live(text: str) -> bool:
 # What is built
 
 
-def built(state: State, facts: Mapping[str, Any]) -> Built:
+def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
     """What the build of a package makes, as far as its CMake files and setup.py say it without variables."""
     executables: dict[str, tuple[str, ...]] = {}
     libraries: dict[str, tuple[str, ...]] = {}
@@ -421,7 +423,7 @@ def built(state: State, facts: Mapping[str, Any]) -> Built:
     for file in state.files:
         if file.kind == "python" and file.path not in reached and _starts(facts.get(file.path)):
             scripts.setdefault(file.path.rpartition("/")[2].removesuffix(".py"), file.path)
-    return Built(state.name, executables, libraries, components, scripts, links)
+    return BuiltPackage(state.name, executables, libraries, components, scripts, links)
 
 
 def _commands(facts: Any, paths: Iterable[str], folder: str) -> Iterator[tuple[str, list[str]]]:
@@ -455,6 +457,6 @@ def _starts(facts: Any) -> bool:
     return body is not None and any("__main__" in guard.text for guard in body.guards)
 
 
-def kind_of_facts(file: File) -> str:
+def kind_of_facts(file: PackageFile) -> str:
     """The kind of facts that are wanted of a file."""
     return kinds.FLOW.get(file.kind, file.kind)

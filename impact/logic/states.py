@@ -15,22 +15,22 @@ from ..facts.kinds import version_of_all
 from ..facts.store import pack, unpack
 from ..model.flow import join
 from ..source_keys import source_key
-from .changes import Change, Side, changes, settled
+from .changes import LogicChange, Side, changes, settled
 from .guard_renames import propose_renames
 from .guard_solver import limited_questions
 from .guards import Language
-from .history import File, State
-from .match import Names
-from .statements import EMPTY, Before, Digest, digest
+from .history import PackageFile, PackageState
+from .match import Renames
+from .statements import EMPTY, Before, PackageStatements, digest
 
 _LONGEST_TEXT = 500_000
-_decoder = msgspec.msgpack.Decoder(Digest)
+_decoder = msgspec.msgpack.Decoder(PackageStatements)
 
 
 @limited_questions()
 def compared(
-    old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[File], bytes]
-) -> list[Change]:
+    old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[PackageFile], bytes]
+) -> list[LogicChange]:
     """What happened to publishing from one side to the other, by path and line, rewordings included.
 
     renamed: gives files that are called otherwise now, as paths of the repository; asked where anything differs. read:
@@ -39,16 +39,19 @@ def compared(
     if settled(old, new):
         return []
     files = renamed()
-    found = list(changes(old, new, Names({}, files)))
+    found = list(changes(old, new, Renames({}, files)))
     if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
         words = renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)
         if words:
-            found = list(changes(old, new, Names(words, files)))
+            found = list(changes(old, new, Renames(words, files)))
     return sorted(found, key=lambda change: (change.path, change.line, change.kind, change.why))
 
 
 def renamed_words(
-    old: Sequence[State], new: Sequence[State], files: Mapping[str, str], read: Callable[[File], bytes]
+    old: Sequence[PackageState],
+    new: Sequence[PackageState],
+    files: Mapping[str, str],
+    read: Callable[[PackageFile], bytes],
 ) -> dict[str, str]:
     """Identifiers that are called otherwise in the files that differ. files: those that are called otherwise."""
     was = {state.whole(file.path): file for state in old for file in state.files}
@@ -68,7 +71,7 @@ def renamed_words(
     return found
 
 
-def safe_digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
+def safe_digest(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> PackageStatements:
     """The digest of a state, an empty one of code that is nested beyond all reason: it must not end the run."""
     try:
         return digest(state, facts, before)
@@ -78,7 +81,7 @@ def safe_digest(state: State, facts: Mapping[str, Any], before: Before | None = 
         return EMPTY
 
 
-def packed_digest(digest: Digest) -> bytes:
+def packed_digest(digest: PackageStatements) -> bytes:
     """A digest as it is kept. Names of bytes that are no UTF-8, which msgpack cannot carry, are kept as they are
     shown."""
     try:
@@ -87,7 +90,7 @@ def packed_digest(digest: Digest) -> bytes:
         return pack(msgspec.msgpack.encode(_visible_all(msgspec.to_builtins(digest))))
 
 
-def unread_digest(state: State) -> tuple[bytes, bytes]:
+def unread_digest(state: PackageState) -> tuple[bytes, bytes]:
     """What stands for the digest of a state that could not be made: all its files count as not read."""
     files = tuple(file.path for file in state.files)
     return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
@@ -103,7 +106,7 @@ def _visible_all(value: Any) -> Any:
     return value
 
 
-def decoded(data: bytes | None) -> Digest:
+def decoded(data: bytes | None) -> PackageStatements:
     """A digest as it was packed; an empty one where that cannot be read."""
     if data is None:
         return EMPTY

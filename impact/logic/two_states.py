@@ -11,14 +11,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ...edges import processes
-from ..facts.extract import Gathered, gather
+from ..facts.extract import ExtractedFacts, gather
 from ..facts.kinds import FLOW
 from ..facts.store import Store, pack, unpack
 from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
-from .changes import Change, Side
-from .history import File, State
-from .statements import Digest, kind_of_facts
+from .changes import LogicChange, Side
+from .history import PackageFile, PackageState
+from .statements import PackageStatements, kind_of_facts
 from .states import compared, decoded, digest_key, packed_digest, safe_digest, unread_digest
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
@@ -31,11 +31,11 @@ class Differing(NamedTuple):
     """The packages whose code or build differs, as the base and as the workspace has them, and which files are called
     otherwise. Paths are relative to the workspaces' roots."""
 
-    old: tuple[State, ...]
-    new: tuple[State, ...]
+    old: tuple[PackageState, ...]
+    new: tuple[PackageState, ...]
     renamed: Mapping[str, str]
 
-    def changed(self) -> Iterator[tuple[str, File | None, File]]:
+    def changed(self) -> Iterator[tuple[str, PackageFile | None, PackageFile]]:
         """Path, the file at the base (None where there was none) and now, of all whose content differs."""
         was = {state.whole(file.path): file for state in self.old for file in state.files}
         predecessors = {new: old for old, new in self.renamed.items()}
@@ -60,7 +60,7 @@ def differing(workspace: Workspace, base: Workspace) -> Differing:
 
 
 @lru_cache(maxsize=2)
-def publishing(workspace: Workspace, base: Workspace) -> tuple[Change, ...]:
+def publishing(workspace: Workspace, base: Workspace) -> tuple[LogicChange, ...]:
     """What happened to the logic of publishing since the base, by path and line; rewordings are left out."""
     found = differing(workspace, base)
     if not found.old and not found.new:
@@ -82,7 +82,7 @@ class _Reading:
             for file in state.files
         }
 
-    def __call__(self, file: File) -> bytes:
+    def __call__(self, file: PackageFile) -> bytes:
         workspace, path = self.places[file.id]
         try:
             return workspace.read(path)
@@ -103,19 +103,19 @@ def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str
     return tuple(found)
 
 
-def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> State:
+def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> PackageState:
     """A package as `logic` knows it: its key is the same there for the same content."""
     ros = 2 if package.build_type.startswith("ament") else 1
     stamp = hashlib.sha1(f"{package.name} {ros}\n".encode())
-    files: list[File] = []
+    files: list[PackageFile] = []
     for path, content, kind in listed:
         if kind == "script":
             if path.endswith(".cfg") or not _is_python(workspace, f"{package.path}/{path}".lstrip("/")):
                 continue
             kind = "python"
-        files.append(File(path, content, kind))
+        files.append(PackageFile(path, content, kind))
         stamp.update(f"{path} {content} {kind}\n".encode("utf-8", "surrogateescape"))
-    return State(package.name, package.path, ros, tuple(files), stamp.digest())
+    return PackageState(package.name, package.path, ros, tuple(files), stamp.digest())
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:
@@ -123,14 +123,17 @@ def _is_python(workspace: Workspace, path: str) -> bool:
     return any(each is not None and path in each.kinds and each.facts(path).kind.endswith("python") for each in looks)
 
 
-def _renamed(old: Sequence[State], new: Sequence[State]) -> dict[str, str]:
+def _renamed(old: Sequence[PackageState], new: Sequence[PackageState]) -> dict[str, str]:
     """Files that are called otherwise now: of the same content, or the only ones of a name."""
     was = {state.whole(file.path): file for state in old for file in state.files}
     is_now = {state.whole(file.path): file for state in new for file in state.files}
     gone = {path: file for path, file in was.items() if path not in is_now}
     come = {path: file for path, file in is_now.items() if path not in was}
     found: dict[str, str] = {}
-    keys: tuple[Callable[[str, File], str], ...] = (lambda _, file: file.id, lambda path, _: path.rpartition("/")[2])
+    keys: tuple[Callable[[str, PackageFile], str], ...] = (
+        lambda _, file: file.id,
+        lambda path, _: path.rpartition("/")[2],
+    )
     for key in keys:
         before, after = _by(key, gone, set(found)), _by(key, come, set(found.values()))
         for name, paths in before.items():
@@ -140,7 +143,9 @@ def _renamed(old: Sequence[State], new: Sequence[State]) -> dict[str, str]:
     return found
 
 
-def _by(key: Callable[[str, File], str], files: Mapping[str, File], done: set[str]) -> dict[str, list[str]]:
+def _by(
+    key: Callable[[str, PackageFile], str], files: Mapping[str, PackageFile], done: set[str]
+) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for path, file in files.items():
         if path not in done:
@@ -151,7 +156,7 @@ def _by(key: Callable[[str, File], str], files: Mapping[str, File], done: set[st
 # Digests
 
 
-def _digests(workspace: Workspace, states: Sequence[State]) -> list[Digest]:
+def _digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
     """The digests of some packages, in their order; those that are not known are made and kept."""
     store: Store = workspace.gathered.store
     rows = {digest_key(state.key): state for state in states}
@@ -166,7 +171,7 @@ def _digests(workspace: Workspace, states: Sequence[State]) -> list[Digest]:
     return [decoded(packed.get(state.key)) for state in states]
 
 
-def flow_facts(workspace: Workspace, states: Sequence[State]) -> Gathered:
+def flow_facts(workspace: Workspace, states: Sequence[PackageState]) -> ExtractedFacts:
     """The flow facts of some packages alone."""
     main = workspace.gathered
     if main.second is not None or not states:
@@ -178,7 +183,9 @@ def flow_facts(workspace: Workspace, states: Sequence[State]) -> Gathered:
 _CODE = frozenset(FLOW.values())
 
 
-def _made(workspace: Workspace, gathered: Gathered, states: Sequence[State]) -> Iterator[tuple[bytes, bytes]]:
+def _made(
+    workspace: Workspace, gathered: ExtractedFacts, states: Sequence[PackageState]
+) -> Iterator[tuple[bytes, bytes]]:
     jobs = processes.cores()
     if jobs < 2 or sum(len(state.files) for state in states) < _ALONE_FILES or not processes.may_fork():
         for state in states:
@@ -190,7 +197,7 @@ def _made(workspace: Workspace, gathered: Gathered, states: Sequence[State]) -> 
         yield unread_digest(state) if isinstance(made, processes.Died) else made
 
 
-def _one(workspace: Workspace, gathered: Gathered, state: State) -> tuple[bytes, bytes]:
+def _one(workspace: Workspace, gathered: ExtractedFacts, state: PackageState) -> tuple[bytes, bytes]:
     """The key of a state, and its digest, packed."""
     whole = {file.path: state.whole(file.path) for file in state.files}
     gathered.preload(whole.values())

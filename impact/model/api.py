@@ -21,8 +21,8 @@ from ..targets.surface.offers_cpp import (
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
-    from ..targets.surface.changes import Event, Form, Line
-    from ..targets.surface.store import History
+    from ..targets.surface.changes import ChangeEvent, Form, Line
+    from ..targets.surface.store import SurfaceHistory
 
 T = TypeVar("T")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
@@ -32,7 +32,7 @@ ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
 """Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
 
 
-class Found(NamedTuple):
+class FoundName(NamedTuple):
     """A use of such a name in a text.
 
     package, name, offset: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
@@ -61,20 +61,20 @@ class AskedForm(NamedTuple):
     version: str
     last: str
     first: str
-    history: Callable[[], History | None] | None
+    history: Callable[[], SurfaceHistory | None] | None
 
 
-class Name:
+class ChangingName:
     """A changing name, as the versions that are asked about have it, worked out where it is needed. what: as in
     surface_changes.Told. lines: its events in the line of each ROS generation, and what makes the forms of them."""
 
-    def __init__(self, package: str, name: str, what: str, lines: tuple[tuple[Sequence[Event], _Forms], ...]):
+    def __init__(self, package: str, name: str, what: str, lines: tuple[tuple[Sequence[ChangeEvent], _Forms], ...]):
         self.package, self.name, self.what, self._lines = package, name, what, lines
         self._by_count: dict[int, tuple[bool, bool]] = {}
 
-    def with_line(self, events: Sequence[Event], forms_of: _Forms) -> Name:
+    def with_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
         """The same name with the line of another generation, which goes first and says what it is."""
-        return Name(self.package, self.name, events[0].told[0].what, ((events, forms_of), *self._lines))
+        return ChangingName(self.package, self.name, events[0].told[0].what, ((events, forms_of), *self._lines))
 
     @cached_property
     def forms(self) -> tuple[AskedForm, ...]:
@@ -179,11 +179,11 @@ def _is_pure(form: Form | None) -> bool:
     return any("pure" in one.traits for one in virtual_forms(form))
 
 
-class Known:
+class PackageNames:
     """What is asked of one package again and again. names: changing names of C++. bases: classes with the full names of
     their bases. classes: every class that shows, to the package."""
 
-    def __init__(self, names: dict[str, Name], bases: dict[str, tuple[str, ...]], classes: dict[str, str]):
+    def __init__(self, names: dict[str, ChangingName], bases: dict[str, tuple[str, ...]], classes: dict[str, str]):
         self.names, self.bases, self.classes = names, bases, classes
 
     @cached_property
@@ -237,12 +237,12 @@ class Changes:
         self,
         lines: Callable[[str], Mapping[int, Line]],
         asked: AskedVersions | None = None,
-        history: Callable[[str, int], History | None] | None = None,
+        history: Callable[[str, int], SurfaceHistory | None] | None = None,
     ):
         self._lines, self._asked, self._history = lines, asked, history
-        self._known: dict[tuple[str, int], Known | None] = {}
+        self._known: dict[tuple[str, int], PackageNames | None] = {}
 
-    def known(self, package: str, ros: int = 0) -> Known | None:
+    def known(self, package: str, ros: int = 0) -> PackageNames | None:
         """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
         key = package, ros
         if key not in self._known:
@@ -282,19 +282,19 @@ class Changes:
         )  # fmt: skip
 
 
-_Forms = Callable[[Sequence["Event"]], tuple[AskedForm, ...]]
+_Forms = Callable[[Sequence["ChangeEvent"]], tuple[AskedForm, ...]]
 
 
-def _every_place(events: Sequence[Event]) -> Mapping[int, bool]:
+def _every_place(events: Sequence[ChangeEvent]) -> Mapping[int, bool]:
     """The first version, and those that the events are of."""
     return dict.fromkeys((0, *(event.place for event in events)), False)
 
 
 def _asked_forms(
-    events: Sequence[Event],
+    events: Sequence[ChangeEvent],
     line: Line,
     places: Mapping[int, bool],
-    history: Callable[[], History | None] | None,
+    history: Callable[[], SurfaceHistory | None] | None,
 ) -> Iterator[AskedForm]:
     """How versions have a name. places: of the versions in their line, and of each whether only an update brings it."""
     for place, ahead in places.items():
@@ -311,8 +311,8 @@ _INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))
 _MEMBERS = frozenset(("method", "field", "constructor", "destructor", "conversion"))
 
 
-def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
-    names: dict[str, Name] = {}
+def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> PackageNames:
+    names: dict[str, ChangingName] = {}
     bases: dict[str, tuple[str, ...]] = {}
     classes: dict[str, str] = {}
     for line, forms_of in lines:
@@ -325,7 +325,7 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
             before = names.get(full)  # what another generation told of it
             what = events[0].told[0].what
             if before is None:
-                names[full] = Name(package, full, what, ((events, forms_of),))
+                names[full] = ChangingName(package, full, what, ((events, forms_of),))
             else:
                 names[full] = before.with_line(events, forms_of)
             if what in _MEMBERS:
@@ -335,7 +335,7 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Known:
         for full, those in line.bases.items():
             classes[full] = package
             bases[full] = tuple(dict.fromkeys((*bases.get(full, ()), *those)))
-    return Known(names, bases, classes)
+    return PackageNames(names, bases, classes)
 
 
 _KINDS = {"function": ("method", "function"), "variable": ("field", "variable"), "alias": ("alias",)}
@@ -388,7 +388,7 @@ class Vocabulary:
         self.home = home
         self._changes, self._ros = changes, ros
         self._types: dict[tuple[str, str, str], tuple[str, frozenset[str]]] = {}
-        self._known: dict[str, Known] = {}
+        self._known: dict[str, PackageNames] = {}
         self._by_last: dict[str, tuple[str, ...]] = {}
         self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
         self._speakers: dict[str, frozenset[str]] = {}

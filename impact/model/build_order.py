@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .view import View
+from .view import TargetView
 
 # What catkin_pkg calls the dependencies of a kind.
 _LISTS = {
@@ -11,7 +11,7 @@ _LISTS = {
 }  # fmt: skip
 
 
-def build_order(view: View) -> list[str]:
+def build_order(view: TargetView) -> list[str]:
     """Names of the workspace's packages, those first that others need; of those that do not need each other, by name.
 
     Dependencies under a condition that does not hold on the view's target do not count; those on a group do. Packages

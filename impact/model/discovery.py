@@ -21,7 +21,7 @@ import msgspec
 
 from ...edges.patterns import PatternError, cost_of, matches
 from ..facts.colcon import ColconFile
-from ..facts.extract import Gathered
+from ..facts.extract import ExtractedFacts
 from ..facts.manifest import Manifest
 from ..tree import PathProblem, Tree, inside
 
@@ -115,7 +115,7 @@ class Discovered:
         return owner
 
 
-def discover(tree: Tree, gathered: Gathered) -> Discovered:
+def discover(tree: Tree, gathered: ExtractedFacts) -> Discovered:
     """Finds the packages of a tree from its paths and the facts of its manifests.
 
     A manifest without a usable name still makes a package, so that what is wrong with it can be reported; one that
@@ -125,7 +125,7 @@ def discover(tree: Tree, gathered: Gathered) -> Discovered:
 
 
 class _Search:
-    def __init__(self, tree: Tree, gathered: Gathered):
+    def __init__(self, tree: Tree, gathered: ExtractedFacts):
         self.tree = tree
         self.gathered = gathered
         gathered.preload(gathered.paths("manifest", "manifest_variant"))
@@ -425,7 +425,7 @@ def _extra(given: dict[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _strings(given.get(key))))
 
 
-def manifest_at(gathered: Gathered, path: str) -> Manifest | None:
+def manifest_at(gathered: ExtractedFacts, path: str) -> Manifest | None:
     """What a manifest says; None where there is none, or it could not be read."""
     if path not in gathered.kinds:
         return None
@@ -433,7 +433,7 @@ def manifest_at(gathered: Gathered, path: str) -> Manifest | None:
     return facts if isinstance(facts, Manifest) else None
 
 
-def generation(discovered: Discovered, gathered: Gathered) -> int:
+def generation(discovered: Discovered, gathered: ExtractedFacts) -> int:
     """1 or 2: which ROS generation most packages of the tree are written for."""
     two = 0
     total = 0

@@ -66,7 +66,7 @@ class Binary(NamedTuple):
     elf: Elf
 
 
-class Installed(NamedTuple):
+class InstallSpace(NamedTuple):
     """An install space. label: as it was given. libraries: names by which its own libraries can be found. problems:
     files that could not be read in full. underlays: prefixes that it was built on."""
 
@@ -94,7 +94,7 @@ def read_installed(
     packages: Iterable[str] = (),
     owners: Mapping[str, str] | None = None,
     jobs: int | None = None,
-) -> Installed:
+) -> InstallSpace:
     """Reads an install space. packages: names of the workspace's packages. owners: names of libraries and programs that
     they build, to the package. jobs: processes to read with, all available cores when None.
 
@@ -135,7 +135,7 @@ def read_installed(
             f"--install {label}: holds no built program or library (no ELF file){unread}; build the workspace first, "
             "or give another folder"
         )
-    return Installed(
+    return InstallSpace(
         label, tuple(binaries), frozenset(names), tuple(problems), tuple(islice(_underlays(folder), _PREFIXES))
     )
 
@@ -251,7 +251,7 @@ def _reason(error: OSError) -> str:
 # The workspace, and the machines
 
 
-def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, jobs: int | None = None) -> Installed:
+def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, jobs: int | None = None) -> InstallSpace:
     """The install space of a workspace whose root is given. Raises as read_installed() does."""
     owners: dict[str, str] = {}
     for package in workspace:
@@ -265,7 +265,7 @@ def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, j
     return found if inside.startswith("..") else found._replace(label=inside.replace(os.sep, "/"))
 
 
-def shelves(installed: Installed, targets: Sequence[Chosen], config: Config) -> list[Shelf]:
+def shelves(installed: InstallSpace, targets: Sequence[Chosen], config: Config) -> list[Shelf]:
     """What each target has to run the files with, and this machine, on its own where no target is it."""
     from ..targets.capture import platform_of, prefixes
     from ..targets.machine.loader import Loader, own_machine
@@ -293,7 +293,7 @@ def shelves(installed: Installed, targets: Sequence[Chosen], config: Config) -> 
     return found
 
 
-def of_other_machines(installed: Installed, shelves: Iterable[Shelf]) -> Iterator[PathProblem]:
+def of_other_machines(installed: InstallSpace, shelves: Iterable[Shelf]) -> Iterator[PathProblem]:
     """What cannot be told of files that are built for another kind of machine than one that would run them."""
     for shelf in shelves:
         others = Counter(b.elf.machine for b in installed.binaries if shelf.machine and b.elf.machine != shelf.machine)

@@ -11,7 +11,7 @@ from collections.abc import Container, Iterable
 from functools import lru_cache
 
 from ..facts.condition import Condition
-from .cmake.build import Defined
+from .cmake.build import DefinedMacro
 
 _ASKED = re.compile(r"(?:defined\s*\(\s*(?P<whether>[A-Za-z_]\w*)\s*\)|(?P<value>[A-Za-z_]\w*))\Z")
 
@@ -20,8 +20,8 @@ class Macros:
     """The macros of one package. defined: what its CMake defines. elsewhere: names that its sources #define too, of
     which CMake does not tell."""
 
-    def __init__(self, defined: Iterable[Defined], elsewhere: Container[str]):
-        self._tests: dict[str, tuple[Defined, ...]] = {}
+    def __init__(self, defined: Iterable[DefinedMacro], elsewhere: Container[str]):
+        self._tests: dict[str, tuple[DefinedMacro, ...]] = {}
         for macro in defined:
             if macro.name not in elsewhere:
                 self._tests[macro.name] = (*self._tests.get(macro.name, ()), macro)

@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..targets.surface.fields import ROS1_SUFFIXES, Definition, Fields, Member
+from ..targets.surface.fields import ROS1_SUFFIXES, Definition, FieldMember, Fields
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
 
 
-class Interface(NamedTuple):
+class NamedInterface(NamedTuple):
     """An interface that a file can mean. name: `kind/Name`."""
 
     package: str
@@ -26,28 +26,28 @@ class Interface(NamedTuple):
         return self.name.rpartition("/")[2]
 
 
-class Type(NamedTuple):
+class MemberType(NamedTuple):
     """What an expression is. section: empty for a whole service or action, or all of its constants' scopes.
     several: a sequence of them."""
 
-    interface: Interface
+    interface: NamedInterface
     section: str
     several: bool = False
 
 
-class Found(NamedTuple):
+class FoundField(NamedTuple):
     """A use of a member. offset: where its name stands. sure: the receiver's type shows."""
 
-    interface: Interface
+    interface: NamedInterface
     section: str
     member: str
     offset: int
     sure: bool
 
 
-def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[Interface], list[str]]:
+def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[NamedInterface], list[str]]:
     """The interfaces whose generated headers include paths name, and the paths that look so but are not known."""
-    found: dict[Interface, None] = {}
+    found: dict[NamedInterface, None] = {}
     unknown = []
     for path in paths:
         head, _, rest = path.partition("/")
@@ -64,27 +64,27 @@ def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[Inter
         history = table.history(head, ros)
         name = history.by_header.get(stem) if history is not None else None
         if name is not None:
-            found[Interface(head, ros, name)] = None
+            found[NamedInterface(head, ros, name)] = None
         else:
             unknown.append(path)
     return list(found), unknown
 
 
-def interface_named(text: str, table: Fields) -> Interface | None:
+def interface_named(text: str, table: Fields) -> NamedInterface | None:
     """The interface that a qualified C++ name (`pkg::msg::Name`, `pkg::Name`, whatever stands behind) is of."""
     parts = text.split("::")
     if len(parts) > 2 and parts[1] in ("msg", "srv", "action"):
         history = table.history(parts[0], 2)
         name = f"{parts[1]}/{parts[2]}"
-        return Interface(parts[0], 2, name) if history is not None and history.spans(name) is not None else None
+        return NamedInterface(parts[0], 2, name) if history is not None and history.spans(name) is not None else None
     history = table.history(parts[0], 1) if len(parts) > 1 else None
     known = history.by_header.get(parts[1].removesuffix("Ptr").removesuffix("Const")) if history is not None else None
-    return Interface(parts[0], 1, known) if known is not None and "/" not in parts[1] else None
+    return NamedInterface(parts[0], 1, known) if known is not None and "/" not in parts[1] else None
 
 
-def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: Fields) -> list[Interface]:
+def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: Fields) -> list[NamedInterface]:
     """The interfaces that modules such as `pkg.msg` and names imported from them bring."""
-    found: dict[Interface, None] = {}
+    found: dict[NamedInterface, None] = {}
     for module, names in imports:
         package, _, kind = module.partition(".")
         if kind not in ("msg", "srv", "action"):
@@ -96,29 +96,29 @@ def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: F
             for name in names:
                 known = f"{kind}/{name}"
                 if history.spans(known) is not None:
-                    found[Interface(package, ros, known)] = None
+                    found[NamedInterface(package, ros, known)] = None
                 elif ros == 1 and name in history.by_header and name not in ("", "*"):
-                    found[Interface(package, ros, history.by_header[name])] = None
+                    found[NamedInterface(package, ros, history.by_header[name])] = None
     return list(found)
 
 
-class Scope:
+class InterfaceScope:
     """The interfaces that a file can name, with those nested in them. asked: the versions that members may be missing
     in, all when None. home: packages whose members are not looked for. changing: names of members that may be missing.
     """
 
     def __init__(
         self,
-        included: Iterable[Interface],
+        included: Iterable[NamedInterface],
         table: Fields,
         asked: AskedVersions | None = None,
         home: Collection[str] = frozenset(),
     ):
         self.table = table
-        self._lacking: dict[Interface, frozenset[str]] = {}
+        self._lacking: dict[NamedInterface, frozenset[str]] = {}
         # What headers declare, kept by whoever reads them.
         self.declared: dict[tuple | None, dict] = {}
-        self.definitions: dict[Interface, Definition] = {}
+        self.definitions: dict[NamedInterface, Definition] = {}
         waiting = list(included)
         while waiting:
             interface = waiting.pop()
@@ -140,7 +140,7 @@ class Scope:
                 for rows in members.values():
                     waiting.extend(nested(row, interface.ros) for row in rows if row.nested)
         self.changing = frozenset().union(*self._lacking.values())
-        self.by_name: dict[str, list[tuple[Interface, str]]] = {}
+        self.by_name: dict[str, list[tuple[NamedInterface, str]]] = {}
         for interface in sorted(self.definitions):
             kind = interface.name.partition("/")[0]
             for suffix in ROS1_SUFFIXES[kind] if interface.ros == 1 else ("",):
@@ -150,7 +150,7 @@ class Scope:
                 for part in PARTS[kind]:
                     self.by_name.setdefault(f"{interface.short}_{part.capitalize()}", []).append((interface, part))
 
-    def step(self, type_: Type, name: str) -> Type | None:
+    def step(self, type_: MemberType, name: str) -> MemberType | None:
         """What a field of a value is; None when the versions differ in that, or it is no interface."""
         definition = self.definitions.get(type_.interface)
         if definition is None or type_.several:
@@ -162,14 +162,14 @@ class Scope:
         if len(kinds) != 1:
             return None
         (inner, array), = kinds  # fmt: skip
-        return Type(nested(rows[0], type_.interface.ros), "message", array) if inner else None
+        return MemberType(nested(rows[0], type_.interface.ros), "message", array) if inner else None
 
-    def _part(self, type_: Type, name: str, definition: Definition) -> Type | None:
+    def _part(self, type_: MemberType, name: str, definition: Definition) -> MemberType | None:
         """`srv.request`, and `.goal` of what ROS 1 sends around a goal."""
         wanted = type_.section.removeprefix("action") or name
         return type_._replace(section=name) if wanted == name and name in definition.sections else None
 
-    def changes(self, type_: Type, name: str) -> str | None:
+    def changes(self, type_: MemberType, name: str) -> str | None:
         """The section in which a value has a member that some versions lack, None when it has not."""
         definition = self.definitions.get(type_.interface)
         if definition is None or type_.several or name not in self._lacking[type_.interface]:
@@ -184,13 +184,13 @@ PARTS = {"msg": (), "srv": ("request", "response"), "action": ("goal", "result",
 _WRAPPERS = ("action", "actiongoal", "actionresult", "actionfeedback")
 
 
-def nested(member: Member, ros: int) -> Interface:
+def nested(member: FieldMember, ros: int) -> NamedInterface:
     """The interface that a field is made of."""
     package, _, name = member.nested.partition("/")
-    return Interface(package, ros, f"msg/{name}")
+    return NamedInterface(package, ros, f"msg/{name}")
 
 
-def section_of(told: tuple[Interface, str], words: list[str]) -> str | None:
+def section_of(told: tuple[NamedInterface, str], words: list[str]) -> str | None:
     """The section of a type that scopes behind an interface's name tell; None when they name something else."""
     interface, section = told
     for word in words:

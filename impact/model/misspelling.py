@@ -33,7 +33,7 @@ def is_slip(one: str, other: str) -> bool:
     return one_edit(one, other) and re.findall(r"\d", one) == re.findall(r"\d", other)
 
 
-class Names:
+class SpellingIndex:
     """An index of known names that answers which of them a misspelt one means."""
 
     def __init__(self, names: Iterable[str]):
@@ -65,6 +65,6 @@ class Names:
         return near[0] if len(near) == 1 else None
 
 
-def nearest(name: str, names: Names) -> str | None:
+def nearest(name: str, names: SpellingIndex) -> str | None:
     """See Names.nearest."""
     return names.nearest(name)

@@ -24,7 +24,7 @@ from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
 from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Rows, Table
+from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
 from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
@@ -35,8 +35,8 @@ from .macros import Macros
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
-    from .cpp.resolver import Known
-    from .members import Interface as Meant
+    from .cpp.resolver import KnownFile
+    from .members import NamedInterface as Meant
     from .python.api import Changing
     from .settings import Setting
 
@@ -186,7 +186,7 @@ class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     role: str
 
 
-class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package. Paths are relative to the workspace.
 
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
@@ -292,12 +292,12 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
     @cached_property
-    def in_cpp(self) -> Table:
+    def in_cpp(self) -> UsageTable:
         """What to look for in C++ files."""
         words = {name for name in self.headers_of if "::" not in name}
-        return Table(self.uses() if self.uses is not None else {}, self.words | words)
+        return UsageTable(self.uses() if self.uses is not None else {}, self.words | words)
 
-    def searches(self) -> dict[str, tuple[str, Table]]:
+    def searches(self) -> dict[str, tuple[str, UsageTable]]:
         """What is looked for in files while their facts are made, since every join asks for it; as gather() has it."""
         return {"cpp": ("searched_cpp", self.in_cpp)}
 
@@ -357,7 +357,7 @@ def digest_of(
     home: Collection[str] = frozenset(),
     asked: AskedVersions | None = None,
     changing: Changes | None = None,
-) -> Digest:
+) -> LinkedPackage:
     """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
     FileFacts; look: as Gathered.look; read: path to bytes, used only to find members and changing names of C++; home:
     packages of the same workspace, which are not looked for in what changed elsewhere; asked: the versions of other
@@ -385,7 +385,7 @@ class _Join:
         self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._known: dict[str, Known] = {}
+        self._known: dict[str, KnownFile] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
@@ -401,7 +401,7 @@ class _Join:
             if to is not None
         )
 
-    def digest(self) -> Digest:
+    def digest(self) -> LinkedPackage:
         allows, problems = [], []
         aside = (
             _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
@@ -452,7 +452,7 @@ class _Join:
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
-        return Digest(
+        return LinkedPackage(
             self.name,
             self.path,
             self.manifest_path,
@@ -677,12 +677,12 @@ class _Join:
 
     def settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
         """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
-        from .settings import Named, in_launch, in_parameters, mentions_changing, named_in
+        from .settings import NamedNode, in_launch, in_parameters, mentions_changing, named_in
 
         changing = self.watched.changing_parameters
         if not changing:
             return
-        started: dict[str, list[Named]] = {}
+        started: dict[str, list[NamedNode]] = {}
 
         def spoken(path: str) -> set[str]:
             return set(self.facts(path).facts.words.split(" "))
@@ -690,7 +690,7 @@ class _Join:
         def launched(path: str, kind: str) -> Iterable[LaunchFile]:
             return self.look((path,), f"flow_{kind}").values()
 
-        def named(name: str, packages: Collection[str]) -> Named | None:
+        def named(name: str, packages: Collection[str]) -> NamedNode | None:
             other = None
             for path, kind in launches:
                 if path not in started and mentions(name, spoken(path)):
@@ -718,7 +718,7 @@ class _Join:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
         from .cpp.resolver import Resolver
         from .cpp.uses import MemberUses
-        from .members import Scope, interface_named, interfaces_included
+        from .members import InterfaceScope, interface_named, interfaces_included
 
         table, asked = self.watched.fields, self.asked
         if table is None:
@@ -727,11 +727,13 @@ class _Join:
         # Interfaces that come along with other headers are told by their names.
         kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
         meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
-        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table, asked, self.home).changing
+        changing = InterfaceScope(
+            (*interfaces_included(paths, table)[0], *meant.values()), table, asked, self.home
+        ).changing
         if not changing:
             return
         short = {name for name in changing if len(name) < 4}
-        scopes: dict[frozenset[Meant], Scope] = {}
+        scopes: dict[frozenset[Meant], InterfaceScope] = {}
         for path, (role, _, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
@@ -746,7 +748,7 @@ class _Join:
             key = frozenset((*included, *named))
             scope = scopes.get(key)
             if scope is None:
-                scope = scopes[key] = Scope(key, table, asked, self.home)
+                scope = scopes[key] = InterfaceScope(key, table, asked, self.home)
             if not scope.changing & spoken:
                 continue
             words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
@@ -812,15 +814,15 @@ class _Join:
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
-    def known(self, path: str) -> Known:
+    def known(self, path: str) -> KnownFile:
         """What a file declares and uses."""
         known = self._known.get(path)
         if known is None:
-            from ..facts.cpp.code import Code
-            from .cpp.resolver import Known
+            from ..facts.cpp.code import CppCode
+            from .cpp.resolver import KnownFile
 
             words = _spoken(self.cpp[path]) if path in self.cpp else frozenset()
-            known = self._known[path] = Known(Code(self.read(path)), words)
+            known = self._known[path] = KnownFile(CppCode(self.read(path)), words)
         return known
 
     def reached_files(self, path: str) -> set[str]:
@@ -836,7 +838,7 @@ class _Join:
 
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
-        from .members import Scope
+        from .members import InterfaceScope
         from .python.members import changing_members, interfaces_used, may_use_interfaces
 
         table, asked = self.watched.fields, self.asked
@@ -847,7 +849,9 @@ class _Join:
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
-                scope = Scope((interface for interface in used if interface.ros == ros), table, asked, self.home)
+                scope = InterfaceScope(
+                    (interface for interface in used if interface.ros == ros), table, asked, self.home
+                )
                 for use, found in changing_members(facts.fields, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .view import View
+    from .view import TargetView
     from .workspace import Package
 
 KINDS = {
@@ -35,7 +35,7 @@ _HANDED_ON = ("ament_export_dependencies", "catkin_depends", "system_depends")
 class Roles:
     """The closures of the packages of one view."""
 
-    def __init__(self, view: View):
+    def __init__(self, view: TargetView):
         self._view = view
         self._exports: dict[str, tuple[str, ...]] = {}
         self._promises: dict[str, tuple[str, ...]] = {}

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple
 
 from ..facts.launch.actions import Action, LaunchFile, plain
-from ..facts.launch.parameter_files import Entry, ParameterFile
+from ..facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..facts.launch.references import CLASS
 from ..facts.parameters import last_part
 
@@ -34,7 +34,7 @@ class Setting(NamedTuple):
     others: tuple[str, ...] = ()
 
 
-class Named(NamedTuple):
+class NamedNode(NamedTuple):
     """A node that a launch file starts, and the name it goes by."""
 
     package: str
@@ -48,11 +48,11 @@ def mentions_changing(words: Collection[str], changing: Changing) -> bool:
 
 
 def in_parameters(
-    file: ParameterFile, changing: Changing, named: Callable[[str, Collection[str]], Named | None]
+    file: ParameterFile, changing: Changing, named: Callable[[str, Collection[str]], NamedNode | None]
 ) -> Iterator[Setting]:
     """What a file of ROS 2 parameters sets. named: the node that goes by a name, one of some packages first, None where
     no launch file tells."""
-    nodes: dict[tuple[str, ...], list[tuple[list[str], Entry]]] = {}
+    nodes: dict[tuple[str, ...], list[tuple[list[str], ParameterEntry]]] = {}
     for entry in file.entries:
         if "ros__parameters" in entry.path:
             place = entry.path.index("ros__parameters")
@@ -69,10 +69,10 @@ def in_parameters(
 
 def _of_node(
     node: str,
-    entries: list[tuple[list[str], Entry]],
+    entries: list[tuple[list[str], ParameterEntry]],
     controllers: Mapping[str, str],
     changing: Changing,
-    named: Callable[[str, Collection[str]], Named | None],
+    named: Callable[[str, Collection[str]], NamedNode | None],
 ) -> Iterator[Setting]:
     plugins = {tuple(key[:-1]): entry.value for key, entry in entries if key[-1] == "plugin" and _is_class(entry.value)}
     others = tuple(sorted({_package(name) for name in plugins.values()}))
@@ -115,13 +115,13 @@ def in_launch(file: LaunchFile, changing: Changing) -> Iterator[Setting]:
                 yield Setting(name.replace("/", "."), package, plugin, "" if plugin else program, child.line)
 
 
-def named_in(file: LaunchFile) -> Iterator[Named]:
+def named_in(file: LaunchFile) -> Iterator[NamedNode]:
     """The nodes that a launch file starts, as far as they are told plainly; one that it gives no name goes by that of
     its program."""
     for action in _actions(file.actions):
         package, program = plain(action.get("package")), plain(action.get("executable"))
         if package and program:
-            yield Named(package, program, plain(action.get("name")) or program)
+            yield NamedNode(package, program, plain(action.get("name")) or program)
 
 
 def _actions(actions: Collection[Action]) -> Iterator[Action]:

@@ -10,11 +10,11 @@ from .cmake.links import package_of
 
 if TYPE_CHECKING:
     from .package import NameUse
-    from .view import View
+    from .view import TargetView
     from .workspace import Package
 
 
-def find_standards(view: View, package: Package) -> dict[str, int]:
+def find_standards(view: TargetView, package: Package) -> dict[str, int]:
     """The years of the C++ standards that targets are compiled under at least: each one's own, and those that what it
     links asks of its users, in the package, the workspace and the released packages of the target."""
     targets = {target.name: target for target in package.build.targets}
@@ -47,7 +47,7 @@ def find_standards(view: View, package: Package) -> dict[str, int]:
     return found
 
 
-def _find_raised(view: View) -> int:
+def _find_raised(view: TargetView) -> int:
     """The standard that CMake raises a package's to, since the exported targets of rclcpp and others ask for it. Rclcpp
     does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
     if view.target.ros == 1:
@@ -58,7 +58,7 @@ def _find_raised(view: View) -> int:
 
 
 def find_failing_standard(
-    view: View, package: Package, use: NameUse, refused_from: int, needs: int
+    view: TargetView, package: Package, use: NameUse, refused_from: int, needs: int
 ) -> str | None:
     """The C++ standard that a use fails under (empty: under any); None where it does not fail. refused_from, needs: the
     years of the standard that first refuses it and of the one that it needs, 0 for none."""
@@ -89,7 +89,7 @@ _HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_me
              "protobuf_", "install_", "check_", "find_", "nodelet_", "orocos_", "configure_")  # fmt: skip
 
 
-def may_be_set_elsewhere(view: View, package: Package) -> bool:
+def may_be_set_elsewhere(view: TargetView, package: Package) -> bool:
     """True where a macro of another package may set the standard."""
     if any(u.kind == "command" and not u.name.startswith(_HARMLESS) for u in package.build.uses):
         return True

@@ -9,11 +9,11 @@ from ..facts.parameters import last_part
 from ..targets.availability import decides
 from ..targets.parameters import renamed_parameters
 from ..targets.surface.changes import PARAMETER
-from ..targets.surface.offers import Offer, Offered
+from ..targets.surface.offers import Offered, PackageOffer
 
 if TYPE_CHECKING:
     from .package import SettingUse
-    from .view import View
+    from .view import TargetView
     from .workspace import Package
 
 
@@ -31,7 +31,7 @@ class UndeclaredParameter(NamedTuple):
         return self.offered.state != "absent"
 
 
-def list_undeclared_parameters(view: View, package: Package) -> Iterator[UndeclaredParameter]:
+def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[UndeclaredParameter]:
     """Those that files of a package set, beside which no other name of the same parameter is set."""
     uses = [use for use in package.digest.settings if use.role == "run"]
     beside: dict[tuple[str, str, str], set[str]] = {}
@@ -46,7 +46,7 @@ def list_undeclared_parameters(view: View, package: Package) -> Iterator[Undecla
             yield UndeclaredParameter(use, offered, _find_replacement(view, offered, others))
 
 
-def _list_owners(view: View, use: SettingUse) -> Iterator[Offer]:
+def _list_owners(view: TargetView, use: SettingUse) -> Iterator[PackageOffer]:
     """The packages that have the node or plugin on the target: one that is named, or those of which a program is called
     like the node."""
     changing = view.offers.surfaces.changing_parameters.get(last_part(use.name), frozenset[str]())
@@ -64,7 +64,7 @@ def _list_owners(view: View, use: SettingUse) -> Iterator[Offer]:
             yield offer
 
 
-def _find_starters(view: View) -> dict[str, set[str]]:
+def _find_starters(view: TargetView) -> dict[str, set[str]]:
     """The packages whose program of a name the workspace builds, or starts from a launch file."""
     known = view.worked_out.get(("programs", ""))
     if known is None:
@@ -81,7 +81,7 @@ def _find_starters(view: View) -> dict[str, set[str]]:
     return known
 
 
-def _find_offered(view: View, offer: Offer, use: SettingUse) -> Offered | None:
+def _find_offered(view: TargetView, offer: PackageOffer, use: SettingUse) -> Offered | None:
     """What is known of a parameter that the package lacks on the target, None where it is not sure that it does."""
     last = last_part(use.name)
     found = None
@@ -112,7 +112,7 @@ def _fits(wanted: list[str], given: list[str]) -> bool:
     return wanted[0] == given[0] and _fits(wanted[1:], given[1:])
 
 
-def _is_declared_by(view: View, packages: Iterable[str], last: str) -> bool:
+def _is_declared_by(view: TargetView, packages: Iterable[str], last: str) -> bool:
     """Whether some of these packages, or of what is installed with them, may declare a parameter that ends so."""
     for name in view.spread(packages):
         if name in view.workspace.packages:
@@ -123,7 +123,7 @@ def _is_declared_by(view: View, packages: Iterable[str], last: str) -> bool:
     return False
 
 
-def _find_replacement(view: View, offered: Offered, others: Iterable[str]) -> str:
+def _find_replacement(view: TargetView, offered: Offered, others: Iterable[str]) -> str:
     """The other name of a parameter that is declared on the target."""
     offer = view.offers.package(offered.package)
     declared = {last_part(name) for name in offer.parameters} if offer is not None else set()

@@ -18,19 +18,19 @@ from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
-from ..targets.changes import DISTROS, Row
+from ..targets.changes import DISTROS, ChangeRow
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
-from ..targets.providers.includes import Machine, machine, machine_of
+from ..targets.providers.includes import HeadersOfMachine, machine, machine_of
 from ..targets.providers.library import default_standard, include_roots, standard_year
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
-from ..targets.target import Change, Provider, Target
+from ..targets.target import ChangeInForce, Provider, Target
 from ..targets.version import at_least
-from .cmake.build import At, Found, for_tests
-from .misspelling import Names
+from .cmake.build import At, FoundPackage, for_tests
+from .misspelling import SpellingIndex
 from .package import role_of_folder
 from .python.api import python_packages
 from .roles import Roles
@@ -90,7 +90,7 @@ _UNCONFIGURED = Config()
 _LASTING = (frozenset, MappingProxyType)
 
 
-class View:
+class TargetView:
     """One workspace on one target. providers answers for everything outside the workspace. asked: the distros of all
     targets of the same run, each of which has a view of its own."""
 
@@ -264,9 +264,9 @@ class View:
     # -- what is known of the target -------------------------------------------------------------------------------
 
     @cached_property
-    def known_names(self) -> Names:
+    def known_names(self) -> SpellingIndex:
         """Every name a manifest may declare here: packages of the workspace, released ones, rosdep keys."""
-        return Names({*self.workspace.packages, *self.target.released_names(), *self.target.key_names()})
+        return SpellingIndex({*self.workspace.packages, *self.target.released_names(), *self.target.key_names()})
 
     def available(self, name: str) -> bool:
         """True when a package of this name is in the workspace, released on the target, or a rosdep key there."""
@@ -274,7 +274,7 @@ class View:
         return name in self.workspace.packages or target.version(name) is not None or target.resolve(name) is not None
 
     @cached_property
-    def machine(self) -> Machine:
+    def machine(self) -> HeadersOfMachine:
         """The headers that the target has, see targets/includes.py."""
         return machine(self.target)
 
@@ -304,13 +304,13 @@ class View:
         return None if newest is None or newest.distro in self.asked else newest
 
     @cached_property
-    def later_machine(self) -> Machine | None:
+    def later_machine(self) -> HeadersOfMachine | None:
         """Those of the newest long-term distro, see newest."""
         newest = self.newest
         return machine_of(newest.distro, newest.ros) if newest is not None else None
 
     @cached_property
-    def earlier_machines(self) -> tuple[Machine, ...]:
+    def earlier_machines(self) -> tuple[HeadersOfMachine, ...]:
         """Those of the earlier distros of the same generation, newest first."""
         first, last = DISTROS["ardent" if self.target.ros == 2 else "groovy"], DISTROS.get(self.target.distro, 0)
         earlier = [name for name, place in DISTROS.items() if first <= place < last]
@@ -539,7 +539,7 @@ class View:
     def _library_names(self) -> frozenset[str]:
         return self.target.library_names()
 
-    def changes(self, *kinds: str) -> list[Change]:
+    def changes(self, *kinds: str) -> list[ChangeInForce]:
         """Known upstream changes of these kinds that are in force on the target."""
         return [c for kind in kinds for c in self.target.changes().by_kind.get(kind, ())]
 
@@ -565,10 +565,10 @@ class View:
         return self.availabilities.on_horizon(symbol)
 
     @cached_property
-    def coming(self) -> dict[str, tuple[Change, Horizon]]:
+    def coming(self) -> dict[str, tuple[ChangeInForce, Horizon]]:
         """Reviewed changes that are not in force here and will be, by old name, each with the nearest horizon: what
         breaks when this machine, or a colleague's, is updated."""
-        found: dict[str, tuple[Change, Horizon]] = {}
+        found: dict[str, tuple[ChangeInForce, Horizon]] = {}
         for ahead in self.horizons:
             for change in coming_changes(self.target, ahead):
                 found.setdefault(change.old, (change, ahead))
@@ -612,7 +612,7 @@ class View:
         newest = self.newest
         return newest.distro if newest is not None else ""
 
-    def concerned(self, package: Package, change: Change | Row, path: str) -> bool:
+    def concerned(self, package: Package, change: ChangeInForce | ChangeRow, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
@@ -1053,7 +1053,7 @@ class View:
         asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
         return any(self.certain(f.conditions) for f in asked)
 
-    def _modules_asked(self, found: Found) -> Iterator[Need]:
+    def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         name = re.split(r"[<>=]", found.name)[0]
         providers = tuple(self.providers.pkgconfig(name))
@@ -1074,7 +1074,7 @@ class View:
         )
 
 
-    def _parts_asked(self, found: Found, testing: bool, certain: bool) -> Iterator[Need]:
+    def _parts_asked(self, found: FoundPackage, testing: bool, certain: bool) -> Iterator[Need]:
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
@@ -1085,7 +1085,7 @@ class View:
                 if providers:
                     yield Need("part", name, providers, at, "test" if testing else "build", certain)
 
-    def _program_run(self, found: Found) -> Iterator[Need]:
+    def _program_run(self, found: FoundPackage) -> Iterator[Need]:
         """A program that CMake starts; those that every machine has are left out. What a package builds where a library
         is not found, it builds on some machine."""
         providers = tuple(self.providers.executable(found.name))
@@ -1109,7 +1109,7 @@ def _stems(name: str) -> frozenset[str]:
     return frozenset({re.split(r"[-.]", plain)[0], plain.replace("-", "_")})
 
 
-def interface_of(view: View, include: str) -> str | None:
+def interface_of(view: TargetView, include: str) -> str | None:
     """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for others."""
     head, _, rest = include.partition("/")
     package = view.workspace.packages.get(head)

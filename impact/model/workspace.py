@@ -21,7 +21,7 @@ import msgspec
 
 from ...edges import processes
 from ...edges.limits import limits_stamp
-from ..facts.extract import Gathered
+from ..facts.extract import ExtractedFacts
 from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
 from ..source_keys import source_key
@@ -31,7 +31,7 @@ from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover, generation, manifest_at
 from .ignored import holds_ignored, is_ignored
-from .package import Digest, Watched, build_type_of, digest_of
+from .package import LinkedPackage, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
@@ -49,14 +49,14 @@ class Package:
     `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the generation of the workspace.
     """
 
-    digest: Digest
+    digest: LinkedPackage
     name: str
     path: str
     manifest: Manifest
     build: Build
     build_type: str
 
-    def __init__(self, digest: Digest):
+    def __init__(self, digest: LinkedPackage):
         self.digest = digest
         self.name, self.path = digest.name, digest.path
         self.manifest, self.build, self.build_type = digest.manifest, digest.build, digest.build_type
@@ -105,10 +105,10 @@ class Workspace:
 
     def __init__(
         self,
-        packages: Iterable[Digest],
+        packages: Iterable[LinkedPackage],
         discovered: Discovered,
         ros: int,
-        gathered: Gathered,
+        gathered: ExtractedFacts,
         read: Callable[[str], bytes],
         identity: bytes = b"",
         whole: bool = True,
@@ -376,7 +376,7 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
 
 def link(
     tree,
-    gathered: Gathered,
+    gathered: ExtractedFacts,
     store,
     ros: int | None,
     watched: Watched,
@@ -403,7 +403,7 @@ class _Joined(NamedTuple):
     """A package's digest, the same encoded (empty where its names cannot be), and the encoded content ids of the CMake
     files of other packages that it rests on (None: not to be stored)."""
 
-    digest: Digest
+    digest: LinkedPackage
     packed: bytes | memoryview
     head: bytes | None
 
@@ -416,7 +416,7 @@ _REMEMBERED = 5_000_000
 _INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 
 
-def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]], path: str):
+def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, LinkedPackage | None]], path: str):
     """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
     processes.begin_part(0, _JOIN_BYTES + len(linker.paths_of[path]) * _JOIN_BYTES_OF_FILE)
     digest, packed, head = linker.joined_one(*tasks[path])
@@ -436,7 +436,7 @@ class _Linker:
     def __init__(
         self,
         tree,
-        gathered: Gathered,
+        gathered: ExtractedFacts,
         discovered: Discovered,
         ros: int,
         watched: Watched,
@@ -457,13 +457,13 @@ class _Linker:
         self.code = f"{source_key(__name__)} {version_of_all()}"
         self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
 
-    def digests(self, store) -> list[Digest]:
+    def digests(self, store) -> list[LinkedPackage]:
         places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
         keys = {p.path: self.key(p) for p in places}
-        decoder = msgspec.msgpack.Decoder(Digest)
+        decoder = msgspec.msgpack.Decoder(LinkedPackage)
         remembered = store.memos("digest", list(keys.values())) if store is not None else {}
         found: dict[str, _Joined] = {}
-        stale: dict[str, Digest] = {}
+        stale: dict[str, LinkedPackage] = {}
         for place in places:
             blob = remembered.get(keys[place.path])
             if blob is not None:
@@ -492,7 +492,7 @@ class _Linker:
             store.remember("digest", fresh)
         return [found[p.path].digest for p in places]
 
-    def joined(self, places: Iterable[PackagePlace], stale: dict[str, Digest]) -> Iterator[tuple[str, _Joined]]:
+    def joined(self, places: Iterable[PackagePlace], stale: dict[str, LinkedPackage]) -> Iterator[tuple[str, _Joined]]:
         """Folder and join of these packages, several at once where there is much to do. stale: digests of an earlier
         run that may still hold, by folder."""
         tasks = {p.path: (p, stale.get(p.path)) for p in places}
@@ -506,7 +506,7 @@ class _Linker:
         _ = self.watched.in_cpp  # made once and for all processes
         if self.watched.surfaces is not None or self.watched.fields is not None:
             import_module(".cpp.uses", __package__)  # once, not in every process
-        decoder = msgspec.msgpack.Decoder(Digest)
+        decoder = msgspec.msgpack.Decoder(LinkedPackage)
         for path, result in processes.forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
                 place, _ = tasks[path]
@@ -515,7 +515,7 @@ class _Linker:
                 digest, packed, head = result
                 yield path, _Joined(digest or decoder.decode(packed), packed, head)
 
-    def joined_one(self, place: PackagePlace, before: Digest | None) -> _Joined:
+    def joined_one(self, place: PackagePlace, before: LinkedPackage | None) -> _Joined:
         try:
             with self.gathered.deferring():
                 digest, read = self.join(place, before)
@@ -527,7 +527,7 @@ class _Linker:
             digest, read = self.failed(place, why), None
         return self.encoded(digest, read)
 
-    def encoded(self, digest: Digest, read: Any) -> _Joined:
+    def encoded(self, digest: LinkedPackage, read: Any) -> _Joined:
         """A digest with what is remembered of it."""
         try:
             head = msgspec.msgpack.encode(read) if read is not None else None
@@ -540,13 +540,14 @@ class _Linker:
         self.identity.update(len(digest).to_bytes(8, "big"))
         self.identity.update(digest)
 
-    def failed(self, place, reason: str) -> Digest:
+    def failed(self, place, reason: str) -> LinkedPackage:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
         manifest = manifest_at(self.gathered, place.manifest_path)
         assert manifest is not None
         why = f"the package could not be analysed: {reason}"
-        return Digest(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros), Build(),
-                      problems=((place.manifest_path, 0, why),), files=tuple(self.paths_of[place.path]))  # fmt: skip
+        return LinkedPackage(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros),
+                             Build(), problems=((place.manifest_path, 0, why),),
+                             files=tuple(self.paths_of[place.path]))  # fmt: skip
 
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
@@ -581,7 +582,7 @@ class _Linker:
         given = [path for place in self.discovered.packages for path in self.extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
-    def join(self, place, before: Digest | None) -> tuple[Digest, dict[str, str]]:
+    def join(self, place, before: LinkedPackage | None) -> tuple[LinkedPackage, dict[str, str]]:
         """The digest of a package, and the CMake files of others that it rests on. before: a digest of the very same
         files of its own; where the others still say the same, it holds."""
         gathered = self.gathered

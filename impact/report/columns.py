@@ -16,7 +16,7 @@ _BETWEEN = "  "
 _LEAST = 20
 
 
-class Piece(NamedTuple):
+class LinePart(NamedTuple):
     """Part of a line. role: how it is painted. path: `path:line` after the text; a piece with one is not broken, but
     may lose folders. hang: columns before its further lines, for one that begins where it stands."""
 
@@ -26,7 +26,7 @@ class Piece(NamedTuple):
     hang: int | None = None
 
 
-def laid_out(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
+def laid_out(pieces: Sequence[LinePart], style: Style, indent: int, hang: int) -> Iterator[str]:
     """One line of pieces with two spaces between them, or as many as the style's width asks for.
 
     What the pieces hold is shown escaped where a terminal or CI would obey it. indent: columns before the first line,

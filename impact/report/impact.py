@@ -12,7 +12,7 @@ import msgspec
 
 from ...edges.console import counted, json_text
 from ..analysis.downstream import KINDS, Effect, Hop, Impact
-from .columns import Piece, laid_out
+from .columns import LinePart, laid_out
 from .graph.text import WIDE, coverage_lines
 from .markdown_text import code, escaped
 from .style import Style, painted
@@ -29,7 +29,7 @@ _HEADS = {
 }  # fmt: skip
 
 
-class Told(NamedTuple):
+class ImpactHeading(NamedTuple):
     """What is compared: how the workspace, its revision and the base are called, and the tool's version."""
 
     version: str
@@ -48,7 +48,7 @@ def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
             for one in group:
                 lines += _head(one, names, style)
             lines += _tree(group[0], names, everything, style)
-    lines += [*([""] if lines else []), *_line([Piece(summary(impact))], style, 0, 2)]
+    lines += [*([""] if lines else []), *_line([LinePart(summary(impact))], style, 0, 2)]
     if impact.of:
         paths = {effect.path for effect in impact.effects}
         paths |= {hop.path for effect in impact.effects for hop in effect.reaches}
@@ -91,19 +91,19 @@ def _alike(effect: Effect) -> tuple:
     return effect.kind, effect.package, effect.reaches, bool(effect.topics)
 
 
-def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
+def _line(pieces: Sequence[LinePart], style: Style, indent: int, hang: int) -> Iterator[str]:
     return laid_out([one for one in pieces if one.text or one.path], style, indent, hang)
 
 
 def _head(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
     nodes = _some([names.get(node, node) for node in effect.nodes])
     line = [
-        Piece(effect.change, _ROLES.get(effect.change, "warning")), Piece(effect.subject, "bold"),
-        Piece(f"({nodes})" if nodes else ""), Piece("", path=f"{effect.path}:{effect.line}"),
+        LinePart(effect.change, _ROLES.get(effect.change, "warning")), LinePart(effect.subject, "bold"),
+        LinePart(f"({nodes})" if nodes else ""), LinePart("", path=f"{effect.path}:{effect.line}"),
     ]  # fmt: skip
     yield from _line(line, style, 2, 6)
     if effect.why:
-        yield from _line([Piece(effect.why)], style, 6, 8)
+        yield from _line([LinePart(effect.why)], style, 6, 8)
 
 
 def _some(names: Sequence[str]) -> str:
@@ -133,9 +133,9 @@ def _tree(effect: Effect, names: dict[str, str], everything: bool, style: Style)
             done.update(hop.node for hop in fresh)
             kind = "" if fresh[0].kind == "topic" else f" ({fresh[0].kind})"
             told = _some([names.get(hop.node, hop.node) for hop in fresh])
-            place = Piece("", path=f"{fresh[0].path}:{fresh[0].line}")
+            place = LinePart("", path=f"{fresh[0].path}:{fresh[0].line}")
             indent = 6 + 2 * min(depth, 8)
-            line = [Piece(f"{style.symbols[3]} {told}"), Piece(f"{fresh[0].name}{kind}"), place]
+            line = [LinePart(f"{style.symbols[3]} {told}"), LinePart(f"{fresh[0].name}{kind}"), place]
             yield from _line(line, style, indent, indent + 4)
             for hop in fresh:
                 yield from walk(hop.node, depth + 1)
@@ -157,12 +157,12 @@ def short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECT
         if len(group) > _MOST_NODES:
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
-        lines += _line([Piece(f"reaches {_some(near)}" if near else _nowhere(group[0]))], style, 6, 8)
+        lines += _line([LinePart(f"reaches {_some(near)}" if near else _nowhere(group[0]))], style, 6, 8)
     left = sum(map(len, grouped(impact.effects)[most:]))
     if left:
         said = f"and {counted(left, 'further change')}; `rosimpact impact --base {base}` shows all"
-        lines += _line([Piece(said)], style, 2, 4)
-    return [*lines, *_line([Piece(summary(impact))], style, 2, 4)]
+        lines += _line([LinePart(said)], style, 2, 4)
+    return [*lines, *_line([LinePart(summary(impact))], style, 2, 4)]
 
 
 def compact(impact: Impact, most: int = 20) -> dict[str, Any]:
@@ -197,7 +197,7 @@ def markdown(impact: Impact, most: int = _MOST_EFFECTS, told: bool = True) -> st
     return "\n".join([*rows, *last]) + "\n"
 
 
-def as_json(impact: Impact, told: Told) -> str:
+def as_json(impact: Impact, told: ImpactHeading) -> str:
     """All of it as JSON; docs/impact.schema.json describes it."""
     document: dict[str, Any] = {
         "schema": SCHEMA,

@@ -12,13 +12,13 @@ from .style import Style, painted
 from .text import finding_lines
 
 if TYPE_CHECKING:
-    from ..analysis.target_compare import Item
+    from ..analysis.target_compare import UpgradeItem
     from ..rules.rule import Finding
 
 _PLACES = 5
 
 
-def item_lines(report: Report, item: Item, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
+def item_lines(report: Report, item: UpgradeItem, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
     """An item with the code of its first place, and once more where other words are said of another place.
 
     fixable: fingerprints of findings that `check --fix` cures.
@@ -30,7 +30,7 @@ def item_lines(report: Report, item: Item, style: Style, fixable: Collection[str
         yield from _places(findings[1:], style, "  ")
 
 
-def short_lines(item: Item, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
+def short_lines(item: UpgradeItem, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
     """An item without code, set in by two."""
     for findings in _by_message(item):
         yield f"  {visible(findings[0].message)}{_fixed(findings, fixable, style)}"
@@ -39,7 +39,7 @@ def short_lines(item: Item, style: Style, fixable: Collection[str] = ()) -> Iter
             yield f"    {painted(style, 'help', 'help:')} {visible(findings[0].help)}"
 
 
-def _by_message(item: Item) -> Iterable[list[Finding]]:
+def _by_message(item: UpgradeItem) -> Iterable[list[Finding]]:
     groups: dict[tuple[str, str], list[Finding]] = {}
     for finding in item.findings:
         groups.setdefault((finding.message, finding.help), []).append(finding)
@@ -68,7 +68,7 @@ def _place(finding: Finding) -> str:
     return place
 
 
-def as_data(item: Item) -> dict[str, Any]:
+def as_data(item: UpgradeItem) -> dict[str, Any]:
     """An item as the schemas have it."""
     return {
         "rule": item.rule,
@@ -78,7 +78,7 @@ def as_data(item: Item) -> dict[str, Any]:
     }
 
 
-def by_severity(items: Iterable[Item]) -> dict[str, int]:
+def by_severity(items: Iterable[UpgradeItem]) -> dict[str, int]:
     """How many errors, warnings and notes, in this order, zeros included."""
     counts = {"error": 0, "warning": 0, "note": 0}
     for item in items:

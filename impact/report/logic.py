@@ -9,10 +9,10 @@ from itertools import groupby
 from typing import Any
 
 from ...edges.console import counted, json_text, visible
-from ..logic.changes import KINDS, Change
+from ..logic.changes import KINDS, LogicChange
 from ..logic.history import Commit
 from ..logic.repository import Logic
-from .columns import UNBROKEN, Piece, laid_out
+from .columns import UNBROKEN, LinePart, laid_out
 from .style import PLAIN, Style
 
 SCHEMA = 1
@@ -30,39 +30,39 @@ def text(logic: Logic, style: Style = _WIDE) -> str:
     """The changes by commit, newest first, and what was looked at."""
     lines: list[str] = []
     for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
-        title = Piece(visible(commit.summary), "bold", hang=_TITLE)
-        lines += laid_out([Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
+        title = LinePart(visible(commit.summary), "bold", hang=_TITLE)
+        lines += laid_out([LinePart(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
         for _, change in changes:
             lines += _lines(change, style)
         lines.append("")
-    lines += laid_out([Piece(summary(logic))], style, 0, 2)
+    lines += laid_out([LinePart(summary(logic))], style, 0, 2)
     return "\n".join(lines)
 
 
-def _lines(change: Change, style: Style) -> Iterator[str]:
+def _lines(change: LogicChange, style: Style) -> Iterator[str]:
     node = f" ({visible(change.node)})" if change.node else ""
     head = [
-        Piece(f"{change.kind:15s}", _ROLES[change.kind]),
-        Piece((visible(change.topic) or "?") + node, hang=_TOPIC),
-        Piece("", path=f"{visible(change.path)}:{change.line}"),
+        LinePart(f"{change.kind:15s}", _ROLES[change.kind]),
+        LinePart((visible(change.topic) or "?") + node, hang=_TOPIC),
+        LinePart("", path=f"{visible(change.path)}:{change.line}"),
     ]
     yield from laid_out(head, style, 2, 6)
     if change.why:
-        yield from laid_out([Piece(visible(change.why))], style, 6, 8)
+        yield from laid_out([LinePart(visible(change.why))], style, 6, 8)
     if change.old is not None and change.new is not None:
         old, new = apart(change.old, change.new)
         said = [f"- {old or 'always'}", f"+ {new or 'always'}"]
     else:
         said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
     for line in said:
-        yield from laid_out([Piece(visible(line), "dim")], style, 6, 8)
+        yield from laid_out([LinePart(visible(line), "dim")], style, 6, 8)
     for number, reached in enumerate(change.reaches):
         if number == _MOST_READERS:
             yield f"      and {counted(len(change.reaches) - number, 'further subscriber')}"
             break
         callback = f", {reached.callback}" if reached.callback else ""
-        who = Piece(f"reaches {visible((reached.node or reached.package) + callback)}")
-        yield from laid_out([who, Piece("", path=f"{visible(reached.path)}:{reached.line}")], style, 6, 8)
+        who = LinePart(f"reaches {visible((reached.node or reached.package) + callback)}")
+        yield from laid_out([who, LinePart("", path=f"{visible(reached.path)}:{reached.line}")], style, 6, 8)
 
 
 def apart(old: str, new: str) -> tuple[str, str]:
@@ -140,7 +140,7 @@ def as_json(logic: Logic, version: str) -> str:
     return json_text(document)
 
 
-def _entry(commit: Commit, change: Change) -> dict[str, Any]:
+def _entry(commit: Commit, change: LogicChange) -> dict[str, Any]:
     return {
         "commit": commit.id,
         "date": commit.date,

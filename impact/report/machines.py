@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from ...edges.console import counted, visible
 from ..analysis.report import ReportedTarget, cells
 from . import json
-from .columns import Piece, laid_out
+from .columns import LinePart, laid_out
 from .items import as_data, by_severity, item_lines
 from .style import Style, painted
 from .text import described
 
 if TYPE_CHECKING:
-    from ..analysis.machine_compare import Machines, Use
-    from ..analysis.target_compare import Item
+    from ..analysis.machine_compare import DependencyUse, Machines
+    from ..analysis.target_compare import UpgradeItem
 
 FORMATS = ("text", "json")
 SCHEMA = 1
@@ -63,19 +63,19 @@ def _versions(found: Machines, style: Style) -> Iterator[str]:
 
     yield painted(style, "bold", "  ".join(padded(head)).rstrip())
     for row, used in zip(rows, found.versions, strict=True):
-        pieces = [Piece("  ".join(padded(row)) if used.uses else "  ".join(padded(row)).rstrip())]
+        pieces = [LinePart("  ".join(padded(row)) if used.uses else "  ".join(padded(row)).rstrip())]
         name = used.difference.name
         users = list(dict.fromkeys(use.package for use in used.uses))
         pieces += [
-            Piece(f"{package}: {_told([use for use in used.uses if use.package == package], name)}", "dim")
+            LinePart(f"{package}: {_told([use for use in used.uses if use.package == package], name)}", "dim")
             for package in users[:_USERS]
         ]
         if len(users) > _USERS:
-            pieces.append(Piece(f"and {counted(len(users) - _USERS, 'more package')}", "dim"))
+            pieces.append(LinePart(f"and {counted(len(users) - _USERS, 'more package')}", "dim"))
         yield from laid_out(pieces, style, 0, 4)
 
 
-def _told(uses: Sequence[Use], name: str) -> str:
+def _told(uses: Sequence[DependencyUse], name: str) -> str:
     """How a package uses what has this name, in a clause: what it takes of it, or else that it takes it."""
     subjects: dict[str, list[str]] = {}
     for use in uses:
@@ -104,7 +104,7 @@ def _summary(found: Machines, style: Style) -> str:
     return f" {style.symbols[4]} ".join(part for part in (told, both, versions) if part)
 
 
-def _counts(items: Sequence[Item]) -> str:
+def _counts(items: Sequence[UpgradeItem]) -> str:
     return " and ".join(counted(number, severity) for severity, number in by_severity(items).items() if number)
 
 

@@ -10,17 +10,17 @@ import msgspec
 
 from ...edges.console import json_text, visible
 from ..facts.surface import FUNCTIONS, declared
-from ..targets.surface.compare import Change
-from ..targets.surface.python import Names, signature
+from ..targets.surface.compare import VersionChange
+from ..targets.surface.python import SurfaceNames, signature
 from ..targets.surface.surface import Surface
-from .columns import Piece, laid_out
+from .columns import LinePart, laid_out
 from .markdown_text import cell, code, escaped
 from .style import Style, painted
 
 FORMATS = ("text", "json", "markdown")
 
 
-class Source(NamedTuple):
+class VersionSource(NamedTuple):
     """Where a version was read. asked: as the user wrote it. approximate: it is not there, and the revision stands for
     it."""
 
@@ -31,12 +31,12 @@ class Source(NamedTuple):
     approximate: bool = False
 
 
-class Difference(NamedTuple):
+class SurfaceDifference(NamedTuple):
     """A comparison of two versions of some packages of one repository."""
 
-    old: Source
-    new: Source
-    changes: dict[str, tuple[Change, ...]]
+    old: VersionSource
+    new: VersionSource
+    changes: dict[str, tuple[VersionChange, ...]]
 
 
 # -- differences -------------------------------------------------------------------------------------------------------
@@ -52,7 +52,7 @@ _TITLES = {
 _ROLES = {"breaks": "error", "may break": "warning", "deprecated": "warning", "changed": "note", "added": "good"}
 
 
-def group_of(change: Change) -> str:
+def group_of(change: VersionChange) -> str:
     """Which part of the report a change belongs to."""
     if change.breaks:
         return "breaks" if change.sure >= 0.6 else "may break"
@@ -61,7 +61,7 @@ def group_of(change: Change) -> str:
     return "added" if change.kind == "added" else "changed"
 
 
-def diff_text(found: Difference, style: Style, everything: bool) -> str:
+def diff_text(found: SurfaceDifference, style: Style, everything: bool) -> str:
     """The report for people. everything: what is new and what changed harmlessly one by one too, else as numbers."""
     lines: list[str] = []
     for package, changes in found.changes.items():
@@ -74,13 +74,13 @@ def diff_text(found: Difference, style: Style, everything: bool) -> str:
             if name in ("changed", "added") and not everything:
                 counts = Counter(c.what for c in groups[name])
                 told = ", ".join(f"{number} {_plural(what, number)}" for what, number in counts.most_common())
-                lines += ["", *laid_out([Piece(f"{title} ({told})", "dim")], style, 0, 2)]
+                lines += ["", *laid_out([LinePart(f"{title} ({told})", "dim")], style, 0, 2)]
                 continue
             lines += ["", painted(style, _ROLES[name], title)]
             at = ""
             for change in sorted(groups[name], key=lambda c: (c.side, c.where)):
                 if change.where != at and change.where not in ("", change.name):
-                    lines += laid_out([Piece("in ", "dim", change.where)], style, 2, 4)
+                    lines += laid_out([LinePart("in ", "dim", change.where)], style, 2, 4)
                 at = change.where
                 lines += _change(change, style)
         if not changes:
@@ -91,7 +91,7 @@ def diff_text(found: Difference, style: Style, everything: bool) -> str:
     return "\n".join(lines[:-1]) + "\n"
 
 
-def _heading(package: str, found: Difference, style: Style) -> list[str]:
+def _heading(package: str, found: SurfaceDifference, style: Style) -> list[str]:
     arrow = style.symbols[3]
     lines = [painted(style, "bold", visible(f"package {package} {_short(found.old)} {arrow} {_short(found.new)}"))]
     for source in (found.old, found.new):
@@ -99,46 +99,46 @@ def _heading(package: str, found: Difference, style: Style) -> list[str]:
     return lines
 
 
-def _short(source: Source) -> str:
+def _short(source: VersionSource) -> str:
     return f"{source.version} ({source.asked})" if source.version not in ("", source.asked) else source.asked
 
 
-def _lacking(source: Source) -> str:
+def _lacking(source: VersionSource) -> str:
     if source.revision == source.version:
         return "it was read at a branch"
     return f"{source.version} is not there"
 
 
-def _source(source: Source, style: Style) -> Iterator[str]:
+def _source(source: VersionSource, style: Style) -> Iterator[str]:
     text = f"{source.asked}: {source.revision} of {source.repository}"
     if source.approximate:
         text += f"; {_lacking(source)}, so this is approximate"
-    yield from laid_out([Piece(text, "warning" if source.approximate else "dim")], style, 2, 4)
+    yield from laid_out([LinePart(text, "warning" if source.approximate else "dim")], style, 2, 4)
 
 
-def _change(change: Change, style: Style) -> Iterator[str]:
+def _change(change: VersionChange, style: Style) -> Iterator[str]:
     aspects = f" ({', '.join(change.aspects)})" if change.aspects and change.kind != "removed" else ""
     word = "overload removed" if change.kind == "removed" and "overload" in change.aspects else change.kind
-    pieces = [Piece(f"{word} {change.what}{aspects}"), Piece(change.name, "bold")]
+    pieces = [LinePart(f"{word} {change.what}{aspects}"), LinePart(change.name, "bold")]
     if change.sure < 0.6:
-        pieces.append(Piece("not sure", "dim"))
+        pieces.append(LinePart("not sure", "dim"))
     yield from laid_out(pieces, style, 2, 4)
     for mark, text in (("- ", change.old), ("+ ", change.now)):
         if text:
-            yield from laid_out([Piece(mark + text)], style, 4, 8)
+            yield from laid_out([LinePart(mark + text)], style, 4, 8)
     help_ = instead_of(change)
     if help_:
-        yield from laid_out([Piece(help_, "help")], style, 4, 6)
+        yield from laid_out([LinePart(help_, "help")], style, 4, 6)
 
 
-def with_hashes(change: Change, old: Mapping[str, str], new: Mapping[str, str]) -> Change:
+def with_hashes(change: VersionChange, old: Mapping[str, str], new: Mapping[str, str]) -> VersionChange:
     """A change of what goes over the wire, with the hashes of the interface where both are known. old, new: by
     `msg/Name`."""
     name = change.name.partition("/")[2]
     return msgspec.structs.replace(change, old=old[name], now=new[name]) if name in old and name in new else change
 
 
-def instead_of(change: Change) -> str:
+def instead_of(change: VersionChange) -> str:
     """What to do now, in a clause; empty where that is not known."""
     told = []
     if change.instead:
@@ -154,7 +154,7 @@ def _plural(what: str, number: int) -> str:
     return f"{what[:-1]}ies" if what.endswith("y") else f"{what}es" if what.endswith(("s", "sh")) else f"{what}s"
 
 
-def diff_markdown(found: Difference) -> str:
+def diff_markdown(found: SurfaceDifference) -> str:
     """The report as Markdown, for a pull request or a wiki."""
     lines: list[str] = []
     for package, changes in found.changes.items():
@@ -181,7 +181,7 @@ def _code(text: str) -> str:
     return cell(code(text)) if text else ""
 
 
-def diff_json(found: Difference, tool: str) -> str:
+def diff_json(found: SurfaceDifference, tool: str) -> str:
     """The report as JSON: `tool`, `old` and `new` (see Source), `changes` (see Change)."""
     changes = [change for each in found.changes.values() for change in each]
     return _json({"tool": tool, "old": found.old._asdict(), "new": found.new._asdict(), "changes": changes})
@@ -197,7 +197,7 @@ def _json(value: Any) -> str:
 _NONE: Mapping[str, str] = {}
 
 
-class Item(NamedTuple):
+class OfferedItem(NamedTuple):
     """Something that a package offers. part: Interfaces, C++, Python, CMake or Programs. where: header or file.
     deprecated: None for what is not."""
 
@@ -209,61 +209,63 @@ class Item(NamedTuple):
     deprecated: str | None = None
 
 
-def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[Item]:
+def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
     """All that a package offers, part by part. hashes: of its interfaces, by `msg/Name`, as far as they are known."""
     for name, definition in surface.interfaces:
         if name in hashes:
-            yield Item("Interfaces", "hash", f"{surface.package}/{name}", hashes[name])
+            yield OfferedItem("Interfaces", "hash", f"{surface.package}/{name}", hashes[name])
         for section in definition.sections:
             part = "" if section.name == "message" else f"{section.name}."
             for field in section.fields:
                 default = f" {field.default}" if field.default else ""
                 written = f"{field.type}{field.array} {field.name}{default}"
-                yield Item("Interfaces", "field", f"{surface.package}/{name} {part}{field.name}", written)
+                yield OfferedItem("Interfaces", "field", f"{surface.package}/{name} {part}{field.name}", written)
             for one in section.constants:
-                yield Item(
+                yield OfferedItem(
                     "Interfaces",
                     "constant",
                     f"{surface.package}/{name} {part}{one.name}",
                     f"{one.type} {one.name}={one.value}",
                 )
         if name not in hashes and not any(one.fields or one.constants for one in definition.sections):
-            yield Item("Interfaces", "interface", f"{surface.package}/{name}")
+            yield OfferedItem("Interfaces", "interface", f"{surface.package}/{name}")
     known = dict(surface.headers)
     for header in surface.build.headers:
         if header.include not in known:
-            yield Item("C++", "header", header.include, "generated")
+            yield OfferedItem("C++", "header", header.include, "generated")
     for path, header in surface.headers:
-        yield Item("C++", "header", path, deprecated=header.deprecated)
+        yield OfferedItem("C++", "header", path, deprecated=header.deprecated)
         for one in header.entities:
             if one.kind != "using namespace" and not one.internal and one.access != "private":
-                yield Item("C++", one.kind, one.name, declared(one), path, one.deprecated)
-    names = Names(surface.python)
+                yield OfferedItem("C++", one.kind, one.name, declared(one), path, one.deprecated)
+    names = SurfaceNames(surface.python)
     for module in surface.python.modules:
-        yield Item("Python", "module", module.name, where=module.path)
+        yield OfferedItem("Python", "module", module.name, where=module.path)
     for name, entry in sorted(names.offered.items()):
         shown = signature(entry.bound.parameters) if entry.bound and entry.kind in ("function", "method") else ""
-        yield Item(
+        yield OfferedItem(
             "Python", entry.kind, name, shown, deprecated=(entry.bound.deprecated or None) if entry.bound else None
         )
         for member, inner in names.members(entry).items() if entry.kind == "class" and entry.where == name else ():
             shown = signature(inner.bound.parameters) if inner.bound and "method" in inner.kind else ""
-            yield Item("Python", inner.kind, f"{name}.{member}", shown)
+            yield OfferedItem("Python", inner.kind, f"{name}.{member}", shown)
     build = surface.build
-    yield from (Item("CMake", "cmake package", name) for name in build.cmake_names)
-    yield from (Item("CMake", "target", target.name, target.kind) for target in build.targets)
-    yield from (Item("CMake", "command", name) for name in build.commands)
-    yield from (Item("CMake", "variable", name) for name in build.variables)
-    yield from (Item("Programs", "executable", program.name, program.how) for program in build.programs)
-    yield from (Item("Programs", "plugin", plugin.name, f"{plugin.type} ({plugin.base})") for plugin in build.plugins)
+    yield from (OfferedItem("CMake", "cmake package", name) for name in build.cmake_names)
+    yield from (OfferedItem("CMake", "target", target.name, target.kind) for target in build.targets)
+    yield from (OfferedItem("CMake", "command", name) for name in build.commands)
+    yield from (OfferedItem("CMake", "variable", name) for name in build.variables)
+    yield from (OfferedItem("Programs", "executable", program.name, program.how) for program in build.programs)
+    yield from (
+        OfferedItem("Programs", "plugin", plugin.name, f"{plugin.type} ({plugin.base})") for plugin in build.plugins
+    )
     for launch in build.launches:
         written = ", ".join(name if default is None else f"{name}:={default}" for name, default in launch.arguments)
-        yield Item("Programs", "launch file", launch.path, written)
-    yield from (Item("Programs", "parameter", name, default or "") for name, default in surface.parameters)
+        yield OfferedItem("Programs", "launch file", launch.path, written)
+    yield from (OfferedItem("Programs", "parameter", name, default or "") for name, default in surface.parameters)
 
 
 def show_text(
-    surface: Surface, source: Source, style: Style, everything: bool, hashes: Mapping[str, str] = _NONE
+    surface: Surface, source: VersionSource, style: Style, everything: bool, hashes: Mapping[str, str] = _NONE
 ) -> str:
     """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
     items()."""
@@ -274,9 +276,9 @@ def show_text(
         facts.append(f"C++{build.standard}")
     if build.dependencies:
         facts.append(f"passes on {', '.join(build.dependencies)}")
-    lines += laid_out([Piece("; ".join(facts))], style, 2, 4)
+    lines += laid_out([LinePart("; ".join(facts))], style, 2, 4)
     if surface.guessed:
-        lines += laid_out([Piece("the build does not tell which headers are installed; those of include/ are listed",
+        lines += laid_out([LinePart("the build does not tell which headers are installed; those of include/ are listed",
                                  "warning")], style, 2, 4)  # fmt: skip
     last = ""
     for item in items(surface, hashes):
@@ -287,16 +289,16 @@ def show_text(
             last = item.part
         inner = item.part == "C++" and item.what != "header"
         written = item.part == "C++" and item.what in _WRITTEN
-        pieces = [Piece(item.what, "dim"), Piece(item.declaration if written else item.name)]
+        pieces = [LinePart(item.what, "dim"), LinePart(item.declaration if written else item.name)]
         if not written and item.declaration:
-            pieces.append(Piece(item.declaration, "dim"))
+            pieces.append(LinePart(item.declaration, "dim"))
         if item.deprecated is not None:
-            pieces.append(Piece(f"deprecated: {item.deprecated}" if item.deprecated else "deprecated", "warning"))
+            pieces.append(LinePart(f"deprecated: {item.deprecated}" if item.deprecated else "deprecated", "warning"))
         lines += laid_out(pieces, style, 4 if inner else 2, 8)
     if surface.build.unknown:
         lines += ["", painted(style, "bold", "Not known")]
         for part, why in surface.build.unknown:
-            lines += laid_out([Piece(f"{part}: {why}")], style, 2, 4)
+            lines += laid_out([LinePart(f"{part}: {why}")], style, 2, 4)
     return "\n".join(lines) + "\n"
 
 
@@ -305,7 +307,7 @@ _DETAILS = frozenset(("method", "field", "constructor", "destructor", "conversio
 _WRITTEN = FUNCTIONS | {"class", "struct", "union", "enum", "alias", "variable", "macro"}
 
 
-def show_json(surface: Surface, source: Source, tool: str, hashes: Mapping[str, str] = _NONE) -> str:
+def show_json(surface: Surface, source: VersionSource, tool: str, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as JSON: `tool`, `source` (see Source), `package`, `items` (see Item), `unknown`."""
     return _json({
         "tool": tool,
@@ -319,7 +321,7 @@ def show_json(surface: Surface, source: Source, tool: str, hashes: Mapping[str, 
     })  # fmt: skip
 
 
-def show_markdown(surface: Surface, source: Source, hashes: Mapping[str, str] = _NONE) -> str:
+def show_markdown(surface: Surface, source: VersionSource, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as a table."""
     lines = [f"## {escaped(surface.package)} {escaped(_short(source))}", ""]
     lines += ["| what | name | declaration |", "|---|---|---|"]

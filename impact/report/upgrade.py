@@ -15,7 +15,7 @@ from .style import Style, painted
 from .text import described, heading
 
 if TYPE_CHECKING:
-    from ..analysis.target_compare import Item
+    from ..analysis.target_compare import UpgradeItem
     from ..analysis.upgrade import Upgrade
     from ..rules.rule import Finding
 
@@ -93,13 +93,13 @@ def text(found: Upgrade, style: Style) -> str:
     return "\n".join([*lines, "", f" {style.symbols[4]} ".join(parts)]) + "\n"
 
 
-def _worst(items: Iterable[Item]) -> str:
+def _worst(items: Iterable[UpgradeItem]) -> str:
     return "error" if any(item.severity == "error" for item in items) else "warning"
 
 
-def _steps(items: Iterable[Item]) -> dict[str, list[Item]]:
+def _steps(items: Iterable[UpgradeItem]) -> dict[str, list[UpgradeItem]]:
     """Items by package, in the order in which they come."""
-    steps: dict[str, list[Item]] = {}
+    steps: dict[str, list[UpgradeItem]] = {}
     for item in items:
         steps.setdefault(item.package, []).append(item)
     return steps
@@ -157,7 +157,7 @@ def _target(target: ReportedTarget) -> dict[str, Any]:
     return data | ({"notes": list(target.notes)} if target.notes else {})
 
 
-def _work(found: Upgrade, items: Iterable[Item]) -> list[dict[str, Any]]:
+def _work(found: Upgrade, items: Iterable[UpgradeItem]) -> list[dict[str, Any]]:
     folders = {package.name: package.path for package in found.packages}
     return [
         {
@@ -207,7 +207,7 @@ def _data(found: Upgrade) -> Mapping[str, Any]:
     }  # fmt: skip
 
 
-def _row(found: Upgrade, item: Item, group: int) -> list[Any]:
+def _row(found: Upgrade, item: UpgradeItem, group: int) -> list[Any]:
     """Group (0 breaks, 1 deprecated), package, rule, subject, severity, how many places are fixable, findings."""
     names = [found.new.name]
     findings = [html.as_row(found.report, finding, names) for finding in item.findings]

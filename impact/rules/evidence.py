@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from ..model.view import Need, View
+from ..model.view import Need, TargetView
 from ..model.workspace import Package
 
 
-def present(view: View, name: str) -> bool:
+def present(view: TargetView, name: str) -> bool:
     """True when a dependency of this name can be had on the target: in the workspace, released, or a rosdep key."""
     return view.available(name)
 
 
-def circular(view: View, package: Package, name: str) -> bool:
+def circular(view: TargetView, package: Package, name: str) -> bool:
     """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
     other = view.workspace.packages.get(name)
     if other is None:
@@ -21,7 +21,7 @@ def circular(view: View, package: Package, name: str) -> bool:
     )
 
 
-def name_to_declare(view: View, need: Need) -> str | None:
+def name_to_declare(view: TargetView, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target."""
     other = "python3-" if view.target.python_major == 2 else "python-"
     for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):

@@ -56,7 +56,7 @@ class Edit(NamedTuple):
     text: str
 
 
-Cure = Edit | Declare | Remove | Replace | Insert
+FixAction = Edit | Declare | Remove | Replace | Insert
 
 
 class Diagnostic(NamedTuple):
@@ -79,7 +79,7 @@ class Diagnostic(NamedTuple):
     kind: str = ""
     doubts: tuple[Doubt | bool | None, ...] = ()
     severity: str = ""
-    fix: tuple[Cure, ...] = ()
+    fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
     together: Together | None = None
 
@@ -109,7 +109,7 @@ class Finding(NamedTuple):
     help: str = ""
     new: bool = True
     fingerprint: str = ""
-    fix: tuple[Cure, ...] = ()
+    fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
     repeated: bool = False
 

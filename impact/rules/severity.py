@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..facts.condition import Condition
 
 if TYPE_CHECKING:
-    from ..model.view import View
+    from ..model.view import TargetView
 
 
 class Doubt(enum.Enum):
@@ -72,7 +72,7 @@ def severity(*doubts: Doubt | bool | None) -> str:
 _IN_CODE = frozenset(("cpp", "macro", "python"))
 
 
-def doubts_of_place(view: View, role: str, conditions: Iterable[Condition] = ()) -> tuple[Doubt, ...]:
+def doubts_of_place(view: TargetView, role: str, conditions: Iterable[Condition] = ()) -> tuple[Doubt, ...]:
     """What speaks against an error at a place. role: build, run, test or aside, as the model has it. conditions: those
     that it stands under; that they can hold at all, a rule has asked before."""
     doubts = []

@@ -13,17 +13,17 @@ import difflib
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 
-from .changes import DISTROS, Row, all_rows, reached, removed_in, version_of
+from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_of
 from .distro.known import known_distros
 from .evidence import evidence_of, of_offered
 from .evidence_record import Evidence
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER
 from .surface.fields import before, default_fields, there
-from .surface.offers import Offer, Offered, Offers
+from .surface.offers import Offered, Offers, PackageOffer
 from .surface.surface import BuildSurface
 from .symbol import Availability, Horizon, State, Symbol
-from .target import Change, Target
+from .target import ChangeInForce, Target
 
 # Parts of a build by kind: what of a surface can be unknown as a whole, and the names that one version has.
 _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
@@ -82,7 +82,7 @@ def _steps(target: Target) -> int:
     return sum(one.lts and one.ros == target.ros and one.released > here for one in known)
 
 
-def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
+def coming_changes(target: Target, ahead: Horizon) -> tuple[ChangeInForce, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version."""
 
@@ -211,7 +211,7 @@ class Availabilities:
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
 
-    def _made(self, offer: Offer) -> frozenset[str]:
+    def _made(self, offer: PackageOffer) -> frozenset[str]:
         """Headers of the stored version that its tree does not have: those that its build makes, and whatever its own
         headers include."""
         known = self._made_by.get(offer.package)
@@ -251,7 +251,7 @@ class Availabilities:
             sure=sure, evidence=_with_other(offer, offered),
         )  # fmt: skip
 
-    def _has(self, offer: Offer, side: str, name: str) -> bool:
+    def _has(self, offer: PackageOffer, side: str, name: str) -> bool:
         if side in _BUILT:
             return name in _BUILT[side][1](offer.build)
         if side == PARAMETER:
@@ -329,16 +329,16 @@ class Availabilities:
 
 
 @cache
-def _removals() -> dict[str, list[Row]]:
+def _removals() -> dict[str, list[ChangeRow]]:
     """Reviewed rows by the name that they say is removed."""
-    found: dict[str, list[Row]] = {}
+    found: dict[str, list[ChangeRow]] = {}
     for row in all_rows():
         if row.removed_in and not row.new_since and not row.back_in:
             found.setdefault(row.old, []).append(row)
     return found
 
 
-def of_row(symbol: Symbol, change: Change) -> Availability:
+def of_row(symbol: Symbol, change: ChangeInForce) -> Availability:
     """What a reviewed row says of a symbol."""
     state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
     since, earlier = removed_in(change), True
@@ -353,7 +353,7 @@ def of_row(symbol: Symbol, change: Change) -> Availability:
                         earlier=earlier)  # fmt: skip
 
 
-def decides(offer: Offer, offered: Offered) -> bool:
+def decides(offer: PackageOffer, offered: Offered) -> bool:
     """Whether what is known of a name rests on versions that were read: not on a branch, which may hold something else
     than the release, and not on one of two stored versions that differ in this, with the target's between them."""
     line = offer.line
@@ -362,7 +362,7 @@ def decides(offer: Offer, offered: Offered) -> bool:
     return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])
 
 
-def _older(offer: Offer, offered: Offered) -> str:
+def _older(offer: PackageOffer, offered: Offered) -> str:
     """The name that one which is not there yet is going to replace."""
     if offered.state != "absent":
         return ""
@@ -370,7 +370,7 @@ def _older(offer: Offer, offered: Offered) -> str:
     return next((old for old, events in every.items() for e in events for t in e.told if t.instead == offered.name), "")
 
 
-def _with_other(offer: Offer, offered: Offered) -> Evidence:
+def _with_other(offer: PackageOffer, offered: Offered) -> Evidence:
     """The evidence for what surfaces say of a name, with that for what stands for it."""
     evidence = of_offered(offered)
     if (old := _older(offer, offered)) and (gone := offer.get(offered.side, old)) is not None:
@@ -389,7 +389,7 @@ _ALIKE = 0.75
 """How much of two names has to agree, as difflib measures it."""
 
 
-def _alike(offer: Offer, side: str, name: str) -> str:
+def _alike(offer: PackageOffer, side: str, name: str) -> str:
     """What the target's version has that is called most alike; empty where nothing is."""
     close = difflib.get_close_matches(name, list(dict.fromkeys(_BUILT[side][1](offer.build))), 1, _ALIKE)
     return close[0] if close else ""

@@ -39,7 +39,7 @@ LIBRARIES: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-class Machine(NamedTuple):
+class CapturedMachine(NamedTuple):
     """What was read from a machine. packages: ROS packages; debian: system packages that matter; pip: Python
     distributions outside the system's own; tools: compilers, CMake. All map names to versions."""
 
@@ -83,7 +83,7 @@ def from_dpkg(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dic
 
 def capture(
     run: Callable[[list[str]], str] | None = None, root: Path = Path("/"), environment: dict[str, str] | None = None
-) -> Machine:
+) -> CapturedMachine:
     """Reads this machine. run: a command to its output (empty when it fails); root and environment are for tests."""
     run = run or output_of
     environment = dict(os.environ) if environment is None else environment
@@ -107,7 +107,7 @@ def capture(
     libraries.update({name: version for name, version in tools.items() if name in ("gcc", "cmake")})
     # The system's Python where it is known; this one may be of a virtual environment.
     libraries.setdefault("python3", machine.python_version())
-    return Machine(
+    return CapturedMachine(
         environment.get("ROS_DISTRO") or distro or _only_distro(root),
         datetime.date.today().isoformat(),
         platform_of(root),
@@ -115,12 +115,12 @@ def capture(
     )
 
 
-def to_json(captured: Machine) -> str:
+def to_json(captured: CapturedMachine) -> str:
     """The captured file: small, sorted, the same bytes for the same machine on the same day."""
     return json.dumps({"rosimpact_target": SCHEMA, **captured._asdict()}, indent=1, sort_keys=True) + "\n"
 
 
-def read(path: Path) -> Machine:
+def read(path: Path) -> CapturedMachine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
         data = load_json(files.read_file(path, limits().capture))
@@ -138,7 +138,7 @@ def read(path: Path) -> Machine:
         value = data.get(key, {})
         return {str(k): str(v) for k, v in value.items()} if isinstance(value, dict) else {}
 
-    return Machine(
+    return CapturedMachine(
         str(data.get("distro", "")), str(data.get("date", "")), str(data.get("platform", "")), versions("packages"),
         versions("libraries"), versions("debian"), versions("pip"), versions("tools"),
     )  # fmt: skip
@@ -151,7 +151,7 @@ def load_capture(path: Path | str, name: str | None = None) -> DistroTarget:
     return as_target(read(path), name or path.name.removesuffix(".json"), str(path))
 
 
-def as_target(captured: Machine, name: str, where: str) -> DistroTarget:
+def as_target(captured: CapturedMachine, name: str, where: str) -> DistroTarget:
     """A machine as a target. where: the file it came from, for messages."""
     if not captured.distro:
         raise TargetError(f"{where}: names no ROS distro; set `distro` in it, or capture with ROS sourced")
@@ -162,7 +162,7 @@ def as_target(captured: Machine, name: str, where: str) -> DistroTarget:
         raise TargetError(f"{where}: {error}") from None
 
 
-class Difference(NamedTuple):
+class MachineDifference(NamedTuple):
     """One thing that two machines have in different versions; an empty version means that it is not there."""
 
     kind: str
@@ -171,21 +171,21 @@ class Difference(NamedTuple):
     second: str
 
 
-def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[Difference]:
+def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[MachineDifference]:
     """What differs between two targets: distro, platform, libraries, released packages (all of both, or `names`)."""
     found = []
     for kind, a, b in (("distro", first.distro, second.distro), ("platform", first.platform, second.platform),
                        ("date", first.date, second.date)):  # fmt: skip
         if a != b:
-            found.append(Difference(kind, kind, a, b))
+            found.append(MachineDifference(kind, kind, a, b))
     for name in sorted(first.library_names() | second.library_names()):
         a, b = first.library(name) or "", second.library(name) or ""
         if a and b and compare(a, b):
-            found.append(Difference("library", name, a, b))
+            found.append(MachineDifference("library", name, a, b))
     for name in sorted(set(names) or first.released_names() | second.released_names()):
         a, b = first.version(name) or "", second.version(name) or ""
         if a != b:
-            found.append(Difference("package", name, a, b))
+            found.append(MachineDifference("package", name, a, b))
     return found
 
 

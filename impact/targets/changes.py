@@ -19,7 +19,7 @@ import msgspec
 from ..facts.usage import Pattern
 from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError
-from .target import Change, Target
+from .target import ChangeInForce, Target
 from .version import at_least
 
 
@@ -76,7 +76,7 @@ class _Group(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
     until: str = ""
 
 
-class Row(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class ChangeRow(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One known change, on any target.
 
     old: an include path, a package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`,
@@ -144,13 +144,13 @@ def _shared_of(group: _Group) -> dict:
 
 
 @cache
-def all_rows() -> tuple[Row, ...]:
+def all_rows() -> tuple[ChangeRow, ...]:
     """Every known change of names. Raises SnapshotError when the data file cannot be read."""
-    known: dict[tuple[str, str, str], Row] = {}
+    known: dict[tuple[str, str, str], ChangeRow] = {}
     for group in (group for file in _files() for group in file.changes):
         shared = _shared_of(group)
         for old, new in group.names.items():
-            row = Row(old=old, new=new, **shared)
+            row = ChangeRow(old=old, new=new, **shared)
             first = known.setdefault((row.kind, row.package, old), row)
             if first is not row:
                 both = tuple(dict.fromkeys(first.unless + row.unless))
@@ -160,10 +160,10 @@ def all_rows() -> tuple[Row, ...]:
 
 
 @cache
-def all_uses(kind: str = "call-changed") -> dict[str, Row]:
+def all_uses(kind: str = "call-changed") -> dict[str, ChangeRow]:
     """Every known change of uses, or of behaviour, by label. Raises SnapshotError when a file cannot be read, or two
     rows have one label."""
-    found: dict[str, Row] = {}
+    found: dict[str, ChangeRow] = {}
     for group in (g for file in _read(_USES[kind]) for g in (*file.uses, *file.behaviour)):
         shared = _shared_of(group)
         if kind == "behaviour":
@@ -171,7 +171,7 @@ def all_uses(kind: str = "call-changed") -> dict[str, Row]:
         for label, use in group.uses.items():
             if label in found:
                 raise SnapshotError(f"{DATA}: two uses are called `{label}`; install rosimpact again")
-            found[label] = Row(old=label, new=use.help or group.help, pattern=use, **shared)
+            found[label] = ChangeRow(old=label, new=use.help or group.help, pattern=use, **shared)
     return found
 
 
@@ -239,7 +239,7 @@ DISTROS: dict[str, int] = {
 State = Literal["removed", "deprecated", "absent"]
 
 
-def changes_in_force(target: Target, providers: Providers | None = None) -> tuple[Change, ...]:
+def changes_in_force(target: Target, providers: Providers | None = None) -> tuple[ChangeInForce, ...]:
     """Known changes that hold on a target, deprecations and not yet existing new names included.
 
     A row whose package or library the target does not have, or has in an unknown version, is left out, except for
@@ -265,8 +265,10 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     return tuple(found)
 
 
-def _change(row: Row, state: str, version: str) -> Change:
-    return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library)
+def _change(row: ChangeRow, state: str, version: str) -> ChangeInForce:
+    return ChangeInForce(
+        row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library
+    )
 
 
 def version_of(package: str, library: bool, target: Target, derived: bool = False) -> str | None:
@@ -284,7 +286,7 @@ def version_of(package: str, library: bool, target: Target, derived: bool = Fals
     return target.library(package)
 
 
-def _state(row: Row, version: str, target: Target, table: Providers) -> State | None:
+def _state(row: ChangeRow, version: str, target: Target, table: Providers) -> State | None:
     if row.pattern is not None:
         if reached(row.removed_in, version, target) and not reached(row.back_in, version, target):
             return "removed"
@@ -317,7 +319,7 @@ def _state(row: Row, version: str, target: Target, table: Providers) -> State | 
     return "deprecated" if reached(row.deprecated_in, version, target) else None
 
 
-def behaves_differently(row: Row, target: Target) -> bool | None:
+def behaves_differently(row: ChangeRow, target: Target) -> bool | None:
     """Whether a target has the new behaviour that a row describes; None where it has not the package, or one of another
     generation."""
     version = version_of(row.package, row.library, target)
@@ -334,7 +336,7 @@ def _still(table: Providers, package: str, header: str, distro: str, version: st
     )
 
 
-def _had(row: Row, target: Target, table: Providers) -> bool:
+def _had(row: ChangeRow, target: Target, table: Providers) -> bool:
     """Whether an earlier release of this ROS generation had the header: then it is gone rather than not there yet."""
     here = DISTROS.get(target.distro, len(DISTROS))
     return any(
@@ -359,7 +361,7 @@ def _release_days() -> dict[str, str]:
     return {known.name: known.released for known in known_distros() if known.released}
 
 
-def _new_by_table(row: Row, version: str, target: Target) -> bool | None:
+def _new_by_table(row: ChangeRow, version: str, target: Target) -> bool | None:
     if target.distro in row.new_in:
         first = row.new_in[target.distro]
         return bool(first) and at_least(version, first)
@@ -381,12 +383,12 @@ def reached(bound: str, version: str, target: Target) -> bool:
     return bool(version) and at_least(version, bound)
 
 
-def excuses(change: Change) -> tuple[str, ...]:
+def excuses(change: ChangeInForce) -> tuple[str, ...]:
     """Endings of include paths that bring a removed name back (`_c.h` for OpenCV's C constants); empty for most."""
     return _excuses().get((change.package, change.old), ())
 
 
-def removed_in(change: Change) -> str:
+def removed_in(change: ChangeInForce) -> str:
     """The version from which on an old name is gone; empty when it is not known."""
     return _bounds().get((change.kind, change.package, change.old), "")
 

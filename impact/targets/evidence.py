@@ -10,16 +10,16 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from .changes import DISTROS, Row, all_rows, all_uses, reached, version_of
+from .changes import DISTROS, ChangeRow, all_rows, all_uses, reached, version_of
 from .distro.known import known_distros, releases
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
-from .target import Change, DatedTarget, Target
+from .target import ChangeInForce, DatedTarget, Target
 from .version import at_least, parts
 
 if TYPE_CHECKING:
-    from .surface.changes import Event, Line
+    from .surface.changes import ChangeEvent, Line
     from .surface.offers import Offered
     from .surface.store import Surfaces
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # -- from the reviewed tables ------------------------------------------------------------------------------------------
 
 
-def evidence_of(change: Change) -> Evidence:
+def evidence_of(change: ChangeInForce) -> Evidence:
     """The evidence for a known change of changes.py."""
     row = _rows().get((change.kind, change.package, change.old))
     if row is None:
@@ -50,7 +50,7 @@ _WHAT = {"absent": "added", "deprecated": "deprecated"}
 _SIDES = {"header": "header", "python": "python", "cmake": "cmake", "api": "c++"}
 
 
-def _gone(row: Row) -> Evidence:
+def _gone(row: ChangeRow) -> Evidence:
     """That the old name went."""
     side = _SIDES.get(row.kind.partition("-")[0], "")
     # Where an old name came back, no one version tells who has it.
@@ -61,7 +61,7 @@ def _gone(row: Row) -> Evidence:
                     source=row.source, header="" if row.library or side != "header" else row.old)  # fmt: skip
 
 
-def _new(row: Row) -> Evidence:
+def _new(row: ChangeRow) -> Evidence:
     """That the new name came."""
     gone = _gone(row)
     return Evidence(row.package, "added", row.new, row.old, gone.side, first=row.new_since, library=row.library,
@@ -90,7 +90,7 @@ def released_before(package: str, version: str) -> str:
 
 
 @cache
-def _rows() -> dict[tuple[str, str, str], Row]:
+def _rows() -> dict[tuple[str, str, str], ChangeRow]:
     # An absent name is known by its new spelling too, and the change keeps the old one.
     return {(row.kind, row.package, row.old): row for row in (*all_rows(), *all_uses().values())}
 
@@ -149,7 +149,7 @@ def _declared(evidence: Evidence, ros: int) -> Evidence:
     return evidence._replace(old=old, new=new) if old != new else evidence
 
 
-def _deciding(change: str, side: str, events: Sequence[Event], place: int) -> Event | None:
+def _deciding(change: str, side: str, events: Sequence[ChangeEvent], place: int) -> ChangeEvent | None:
     """The event of a name that made it what it is on a target; None when none did."""
     if change == "added":
         found = next((event for event in events if event.place > place), None)
@@ -236,7 +236,7 @@ def _holds_by(line: Line, evidence: Evidence, version: str) -> bool | None:
     return held.pop() if len(held) == 1 else None
 
 
-def _holds_at(evidence: Evidence, events: tuple[Event, ...], line: Line, place: int) -> bool:
+def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, place: int) -> bool:
     if evidence.change in ("changed", "deprecated"):
         return at_least(line.versions[place], evidence.first)
     return there_at(evidence.side, events, place) == (evidence.change == "added")

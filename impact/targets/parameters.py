@@ -15,7 +15,7 @@ from .snapshot import DATA, SnapshotError
 _FILE = DATA / "parameters.json"
 
 
-class Renamed(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class RenamedParameters(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Parameters that got other names in a version of these packages, since. names: old to new, by their last parts.
     source: an address."""
 
@@ -26,7 +26,7 @@ class Renamed(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    renamed: list[Renamed]
+    renamed: list[RenamedParameters]
 
 
 @cache
@@ -42,7 +42,7 @@ def renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
 
 
 @cache
-def all_renamed() -> list[Renamed]:
+def all_renamed() -> list[RenamedParameters]:
     """Every row. Raises SnapshotError."""
     try:
         return msgspec.json.decode(_FILE.read_bytes(), type=_File).renamed

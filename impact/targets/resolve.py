@@ -18,7 +18,7 @@ from ..config import check_inside, lies_in
 from ..tree.ignore import git_folder
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import Known, known_distros
+from .distro.known import KnownDistro, known_distros
 from .platform import CODENAMES, normal_platform
 from .snapshot import Snapshot
 
@@ -190,7 +190,7 @@ def _is_day(text: str) -> bool:
 _WORD = re.compile(r"[a-z0-9.]+")
 
 
-def parse_image(image: str, distros: Sequence[Known]) -> tuple[str, str | None] | None:
+def parse_image(image: str, distros: Sequence[KnownDistro]) -> tuple[str, str | None] | None:
     """(distro, platform or None) that a Docker image's name tells; None when it tells none.
 
     The official `ros` image without a tag, or with `latest`, is the newest long-term release.
@@ -231,7 +231,7 @@ def _docker(text: str, data: Snapshot | None) -> DistroTarget:
 # What stands when nothing is written
 
 
-class Named(NamedTuple):
+class NamedDistro(NamedTuple):
     """A distro and the file (or branch) that names it."""
 
     distro: str
@@ -273,7 +273,7 @@ def default_distros(
     ros: int,
     texts: Iterable[tuple[str, str, str]],
     branches: Iterable[tuple[str, str]],
-    distros: Sequence[Known],
+    distros: Sequence[KnownDistro],
     environment: Mapping[str, str] = os.environ,
     today: str = "",
 ) -> tuple[tuple[str, ...], str]:
@@ -330,7 +330,7 @@ def default_distros(
     return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
 
 
-def _newest_lts(distros: Sequence[Known], ros: int) -> str:
+def _newest_lts(distros: Sequence[KnownDistro], ros: int) -> str:
     return [known.name for known in distros if known.ros == ros and known.lts][-1]
 
 

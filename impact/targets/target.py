@@ -38,7 +38,7 @@ class ReleasedDependency(NamedTuple):
     bounds: tuple[tuple[str, str], ...]
 
 
-class Change(NamedTuple):
+class ChangeInForce(NamedTuple):
     """One known upstream change that is in force on a target.
 
     kind: header-removed, header-renamed, package-removed, package-renamed, api-removed, api-renamed, api-changed,
@@ -60,21 +60,21 @@ class Change(NamedTuple):
     library: bool = False
 
 
-class ChangeTable(tuple[Change, ...]):
+class ChangeTable(tuple[ChangeInForce, ...]):
     """The changes that are in force on a target, in order, and by what they are asked for."""
 
     @cached_property
-    def by_kind(self) -> dict[str, list[Change]]:
+    def by_kind(self) -> dict[str, list[ChangeInForce]]:
         """The changes of each kind."""
-        found: dict[str, list[Change]] = {}
+        found: dict[str, list[ChangeInForce]] = {}
         for change in self:
             found.setdefault(change.kind, []).append(change)
         return found
 
     @cached_property
-    def by_name(self) -> dict[tuple[str, str], list[Change]]:
+    def by_name(self) -> dict[tuple[str, str], list[ChangeInForce]]:
         """The changes by kind and the name that the target does not have, or warns of; CMake commands in lower case."""
-        found: dict[tuple[str, str], list[Change]] = {}
+        found: dict[tuple[str, str], list[ChangeInForce]] = {}
         for change in self:
             name = change.new if change.state == "absent" else change.old
             name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
@@ -82,9 +82,9 @@ class ChangeTable(tuple[Change, ...]):
         return found
 
     @cached_property
-    def removed(self) -> dict[tuple[str, str, str], list[Change]]:
+    def removed(self) -> dict[tuple[str, str, str], list[ChangeInForce]]:
         """What is removed, by kind, package and old name."""
-        found: dict[tuple[str, str, str], list[Change]] = {}
+        found: dict[tuple[str, str, str], list[ChangeInForce]] = {}
         for change in self:
             if change.state == "removed":
                 found.setdefault((change.kind, change.package, change.old), []).append(change)
@@ -203,7 +203,7 @@ class Target(Protocol):
         """True when changes() answers without working them out."""
         ...
 
-    def set_changes(self, changes: tuple[Change, ...]) -> None:
+    def set_changes(self, changes: tuple[ChangeInForce, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
         ...
 

@@ -18,17 +18,17 @@ many, costs that file or folder alone and is among the tree's problems.
 
 from .git import GitTree
 from .joined import JoinedTree, at_merge_bases
-from .paths import IGNORE_MARKERS, LEAVES, Entry, PathProblem, Tree, TreeError, blob_id, inside, shown
+from .paths import IGNORE_MARKERS, LEAVES, PathProblem, Tree, TreeEntry, TreeError, blob_id, inside, shown
 from .working import WorkingTree
 
 __all__ = [
     "IGNORE_MARKERS",
     "LEAVES",
-    "Entry",
     "GitTree",
     "JoinedTree",
     "PathProblem",
     "Tree",
+    "TreeEntry",
     "TreeError",
     "WorkingTree",
     "at_merge_bases",

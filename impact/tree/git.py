@@ -14,8 +14,8 @@ from .paths import (
     LEAVES,
     LONGEST_PATH,
     VERSION_CONTROL,
-    Entry,
     PathProblem,
+    TreeEntry,
     TreeError,
     Walked,
     inside,
@@ -30,7 +30,7 @@ from .repository import (
     MODE_FOLDER,
     MODE_LINK,
     MODE_SUBMODULE,
-    Objects,
+    RepositoryObjects,
     merge_base,
     name_of,
     open_repository,
@@ -67,7 +67,7 @@ class GitTree(Walked):
         self.follow_links = follow_links
         opened = open_repository(self.repository)
         self._repo: Any = opened.repository
-        self._objects = Objects(opened)
+        self._objects = RepositoryObjects(opened)
         commit, tree = resolve(self._repo, revision, self.repository)
         self.commit: str = commit
         self._start(revision, tree, folder)
@@ -82,7 +82,7 @@ class GitTree(Walked):
         self.folder = inside(folder) or ""
         self.name = name_of(self.repositories[""], self.folder)
         self._top = tree
-        self._entries: list[Entry] | None = None
+        self._entries: list[TreeEntry] | None = None
         self._blobs: dict[str, Any] = {}
         self._folders: set[str] = set()
         self._places: Counter[Any] = Counter()
@@ -132,7 +132,7 @@ class GitTree(Walked):
         """How many they are. Raises OSError."""
         return self._objects.size(oid)
 
-    def _walk(self, found: list[Entry]) -> None:
+    def _walk(self, found: list[TreeEntry]) -> None:
         root = self.folder
         _, kind, top = self._find(root)
         if kind != _FOLDER:
@@ -156,7 +156,7 @@ class GitTree(Walked):
                     visited.add(real)
                     self._walk_folder(folder, real, oid, parents, stack, links, found)
 
-    def _walk_folder(self, folder, real, oid, parents, stack, links, found: list[Entry]) -> None:
+    def _walk_folder(self, folder, real, oid, parents, stack, links, found: list[TreeEntry]) -> None:
         if len(folder) > LONGEST_PATH:
             self.problems.append(PathProblem(folder[:100] + "…", "the folder cannot be listed: file name too long"))
             return
@@ -208,13 +208,13 @@ class GitTree(Walked):
     def _leaves(self, target: str) -> bool:
         return not self.follow_links and not within(target, self.folder)
 
-    def _add(self, path: str, oid, found: list[Entry]) -> None:
+    def _add(self, path: str, oid, found: list[TreeEntry]) -> None:
         try:
             size = self._objects.size(oid)
         except OSError:
             size = 0  # whoever needs the bytes of one that is missing or damaged is told when reading
         self._blobs[path] = oid
-        found.append(Entry(path, size))
+        found.append(TreeEntry(path, size))
 
     def _find(self, path: str) -> tuple[str, int, Any]:
         """Follows a path of the whole revision through links: (path without links, kind, id); kind 0 when it leads

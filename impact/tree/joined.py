@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 
 from .git import GitTree
-from .paths import Entry, PathProblem, Tree, TreeError, inside, join, shown, within
+from .paths import PathProblem, Tree, TreeEntry, TreeError, inside, join, shown, within
 from .working import WorkingTree
 
 
@@ -24,7 +24,7 @@ class JoinedTree:
         self.problems: list[PathProblem] = []
         self.skipped: list[PathProblem] = []
         self.aliases: dict[str, str] = {}
-        self._entries: list[Entry] | None = None
+        self._entries: list[TreeEntry] | None = None
 
     @property
     def repositories(self) -> dict[str, str]:
@@ -49,7 +49,7 @@ class JoinedTree:
             raise FileNotFoundError(2, "in none of the trees", path)
         return self.mounts[mount], path[len(mount) + 1 :] if mount else path
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[TreeEntry]:
         if self._entries is None:
             found = []
             for mount, tree in self.mounts.items():
@@ -59,7 +59,7 @@ class JoinedTree:
                 def kept(path: str, mount: str = mount, plain: bool = plain) -> bool:
                     return plain or self._mount(path) == mount
 
-                found += [Entry(prefix + e.path, e.size) for e in tree.entries() if kept(prefix + e.path)]
+                found += [TreeEntry(prefix + e.path, e.size) for e in tree.entries() if kept(prefix + e.path)]
                 for own, theirs in ((self.problems, tree.problems), (self.skipped, tree.skipped)):
                     own += [PathProblem(prefix + p.path, p.message) for p in theirs if kept(prefix + p.path)]
                 for link, target in tree.aliases.items():

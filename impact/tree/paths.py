@@ -16,8 +16,24 @@ from ...edges.console import visible as shown
 from ...edges.limits import limits
 
 __all__ = [
-    "CHARACTERS", "IGNORE_MARKERS", "LEAVES", "LONGEST_PATH", "VERSION_CONTROL", "Entry", "PathProblem", "Tree",
-    "TreeError", "Walked", "blob_id", "inside", "join", "largest_file", "outside", "shown", "too_long", "too_many",
+    "CHARACTERS",
+    "IGNORE_MARKERS",
+    "LEAVES",
+    "LONGEST_PATH",
+    "VERSION_CONTROL",
+    "PathProblem",
+    "Tree",
+    "TreeEntry",
+    "TreeError",
+    "Walked",
+    "blob_id",
+    "inside",
+    "join",
+    "largest_file",
+    "outside",
+    "shown",
+    "too_long",
+    "too_many",
     "within",
 ]  # fmt: skip
 
@@ -32,7 +48,7 @@ LONGEST_PATH = 4096
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
 
 
-class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class TreeEntry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A file. path: relative to the tree's root, with slashes, bytes that are no UTF-8 as surrogate escapes. size: in
     bytes, 0 where a partial clone does not hold the file."""
 
@@ -68,7 +84,7 @@ class Tree(Protocol):
     @property
     def repositories(self) -> dict[str, str]: ...
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[TreeEntry]:
         """Every file, sorted by path."""
         ...
 
@@ -162,7 +178,7 @@ def largest_file() -> int:
     )  # fmt: skip
 
 
-def _name_problems(entries: Iterable[Entry]) -> Iterator[PathProblem]:
+def _name_problems(entries: Iterable[TreeEntry]) -> Iterator[PathProblem]:
     for entry in entries:
         if not entry.path.isascii():
             try:
@@ -176,9 +192,9 @@ class Walked:
 
     problems: list[PathProblem]
     skipped: list[PathProblem]
-    _entries: list[Entry] | None
+    _entries: list[TreeEntry] | None
 
-    def _walk(self, found: list[Entry]) -> None:
+    def _walk(self, found: list[TreeEntry]) -> None:
         raise NotImplementedError
 
     def _follows(self, link: str, target: str, parents: tuple[str, ...], followed: set[str]) -> bool:
@@ -192,9 +208,9 @@ class Walked:
         followed.add(target)
         return True
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[TreeEntry]:
         if self._entries is None:
-            found: list[Entry] = []
+            found: list[TreeEntry] = []
             self._walk(found)
             found.sort(key=lambda entry: entry.path)
             self._entries = found

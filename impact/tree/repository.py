@@ -33,7 +33,7 @@ _FOLDERS = frozenset(("refs", "objects", "info", "logs", "reftable"))
 _FILES = frozenset(("config", "config.worktree", "packed-refs", "index", "shallow", "commondir", "gitdir"))
 
 
-class Opened(NamedTuple):
+class OpenedRepository(NamedTuple):
     """A repository; ids of objects that are not read since their files are too large; files of loose objects by id."""
 
     repository: Any
@@ -41,7 +41,7 @@ class Opened(NamedTuple):
     loose: dict[str, str]
 
 
-def open_repository(place: str) -> Opened:
+def open_repository(place: str) -> OpenedRepository:
     """The repository at or above a folder. Raises TreeError."""
     import pygit2
 
@@ -55,7 +55,7 @@ def open_repository(place: str) -> Opened:
                 raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
             raise TreeError(f"`{shown(place)}` is not in a git repository; give a folder that is in one")
         check.repository(os.path.realpath(found))
-        return Opened(pygit2.Repository(found), frozenset(check.refused), check.loose)
+        return OpenedRepository(pygit2.Repository(found), frozenset(check.refused), check.loose)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         named = f"`{shown(str(error.filename))}`: " if isinstance(error, OSError) and error.filename else ""
@@ -259,13 +259,13 @@ def merge_base(repo: Any, commit: str, other: str) -> str | None:
     return None if found is None else str(found)
 
 
-class Objects:
+class RepositoryObjects:
     """A repository's files and folders by id, each asked for its size before it is read.
 
     Folders are kept, since revisions of one repository share most of theirs. All faults are OSError.
     """
 
-    def __init__(self, opened: Opened):
+    def __init__(self, opened: OpenedRepository):
         import pygit2
 
         self._repo = opened.repository

@@ -18,8 +18,8 @@ from .paths import (
     IGNORE_MARKERS,
     LEAVES,
     VERSION_CONTROL,
-    Entry,
     PathProblem,
+    TreeEntry,
     TreeError,
     Walked,
     blob_id,
@@ -61,7 +61,7 @@ class WorkingTree(Walked):
         self.aliases: dict[str, str] = {}
         self._real_root = os.path.realpath(self.root)
         self._device = os.stat(self.root).st_dev
-        self._entries: list[Entry] | None = None
+        self._entries: list[TreeEntry] | None = None
         self._repositories: dict[str, str] = {}
         self._folders: set[str] = set()
         self._stats: dict[str, tuple[int, int, int, int]] = {}
@@ -78,7 +78,7 @@ class WorkingTree(Walked):
         self.entries()
         return self._repositories
 
-    def _walk(self, found: list[Entry]) -> None:
+    def _walk(self, found: list[TreeEntry]) -> None:
         real_root = self._real_root
         enclosing = enclosing_repository(real_root)
         if enclosing and enclosing != real_root:
@@ -120,7 +120,7 @@ class WorkingTree(Walked):
         parents: tuple[str, ...],
         stack: list[tuple[str, str, str | None]],
         links: list[tuple[str, str, tuple[str, ...]]],
-        found: list[Entry],
+        found: list[TreeEntry],
     ) -> None:
         """Lists one folder: files go to found, folders onto the stack, links to folders into links."""
         try:
@@ -168,7 +168,7 @@ class WorkingTree(Walked):
                 self.problems.append(PathProblem(path, self._why_unreadable(path, error)))
                 continue
             if stat.S_ISREG(status.st_mode):
-                found.append(Entry(path, status.st_size))
+                found.append(TreeEntry(path, status.st_size))
                 self._stats[path] = _stamp(status)
                 if status.st_dev != device:
                     self._devices[path] = status.st_dev

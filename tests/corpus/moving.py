@@ -8,7 +8,7 @@ from email.utils import formatdate
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from rosimpact.corpus.polite import Answer, Client, Clock
+from rosimpact.corpus.polite import Client, Clock, ServiceAnswer
 from server import Asked, Services, issue, stamp
 
 REPOSITORY = "ros2/rclcpp"
@@ -85,7 +85,7 @@ class Direct(Client):
         super().__init__("GitHub", clock=world)
         self._server = server
 
-    def _once(self, url: str, headers: dict[str, str], target: Any) -> Answer:
+    def _once(self, url: str, headers: dict[str, str], target: Any) -> ServiceAnswer:
         parts = urlsplit(url)
         query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
         asked = Asked(parts.path, query, {name.lower(): value for name, value in headers.items()})
@@ -93,4 +93,4 @@ class Direct(Client):
         date = formatdate(self._server.date(), usegmt=True)
         status, sent, body = self._server.answer(asked)
         self._server.after(asked)
-        return Answer(status, url, {"date": date, **{name.lower(): value for name, value in sent.items()}}, body)
+        return ServiceAnswer(status, url, {"date": date, **{name.lower(): value for name, value in sent.items()}}, body)

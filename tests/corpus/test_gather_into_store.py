@@ -15,7 +15,7 @@ from rosimpact.corpus.report import CorpusError, Report
 from rosimpact.corpus.sources.github import GitHub, Listed, Searched
 from rosimpact.corpus.sources.ros_answers import Archive, ArchivedFiles, Askbot
 from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
-from rosimpact.corpus.store import Gathered, Store
+from rosimpact.corpus.store import GatheredReport, Store
 from server import Fault, Services, archived, askbot_item, issue, pull, question, stamp
 from waiting import Hours
 
@@ -458,7 +458,7 @@ def test_a_deleted_text_leaves_the_file_itself(tmp_path):
     chance = random.Random(1)
     reports = [Report(f"a/b#{n}", "u", "github", None, "t", chance.randbytes(3000).hex()) for n in range(40)]
     with Store(path), Store(path) as store:  # one more has it open, or closing it would mend much by itself
-        store.put([Gathered(report) for report in reports])
+        store.put([GatheredReport(report) for report in reports])
         packed = [row[0] for row in store._all("SELECT report FROM report ORDER BY id")]
         # what fits no page goes on in others, from which a piece of its end is looked for
         assert all(blob[-500:-400] in everything_of(tmp_path) for blob in packed)

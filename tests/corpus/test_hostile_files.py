@@ -16,7 +16,7 @@ from rosimpact.corpus.report import CorpusError, Report, read_reports, write_row
 from rosimpact.corpus.robust import read_robust
 from rosimpact.corpus.sources.markup import markdown
 from rosimpact.corpus.sources.ros_answers import Archive, SavedPages
-from rosimpact.corpus.store import Gathered, Store, open_reports
+from rosimpact.corpus.store import GatheredReport, Store, open_reports
 from rosimpact.impact.cli.app import app
 from server import archived
 from typer.testing import CliRunner
@@ -119,7 +119,7 @@ def test_a_pipe_is_no_file_of_reports_and_no_store(tmp_path):
 def test_a_damaged_store_is_an_error_and_stays(harm, tmp_path):
     path = tmp_path / "corpus.sqlite"
     with Store(path) as store:
-        store.put([Gathered(ROW)])
+        store.put([GatheredReport(ROW)])
         store._db.execute("INSERT INTO gathering VALUES ('x', '{}', 1, 1)")
     with sqlite3.connect(path) as db:
         db.execute(harm)

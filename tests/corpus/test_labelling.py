@@ -9,7 +9,7 @@ import random
 import msgspec
 import pytest
 from rosimpact.corpus.labelling import (
-    Given,
+    GivenLabel,
     Session,
     answered,
     chosen,
@@ -21,9 +21,9 @@ from rosimpact.corpus.labelling import (
 )
 from rosimpact.corpus.report import CorpusError, Label, Report, read_labels, write_rows
 
-UPDATE = Given("library-update", "system", "build", "compiler of the new distro refuses the alias")
-MISSING = Given("dependency", "undeclared", "build", "package.xml lacks an entry")
-OTHER = Given("other", None, "none", "a wish")
+UPDATE = GivenLabel("library-update", "system", "build", "compiler of the new distro refuses the alias")
+MISSING = GivenLabel("dependency", "undeclared", "build", "package.xml lacks an entry")
+OTHER = GivenLabel("other", None, "none", "a wish")
 
 
 def report(number: int, **more) -> Report:
@@ -76,10 +76,10 @@ def test_what_is_put_off_comes_again_next_time(file):
     ("second", "decided"),
     [
         (UPDATE, "agreed"),
-        (Given("library-update", "system", "build", "other words"), "agreed"),
+        (GivenLabel("library-update", "system", "build", "other words"), "agreed"),
         (MISSING, "disputed"),
-        (Given("library-update", "ros", "build", "same label, other kind"), "disputed"),
-        (Given("library-update", "system", "run", "same label, other phase"), "disputed"),
+        (GivenLabel("library-update", "ros", "build", "same label, other kind"), "disputed"),
+        (GivenLabel("library-update", "system", "run", "same label, other phase"), "disputed"),
     ],
 )
 def test_a_second_reading_agrees_or_disputes(file, second, decided):
@@ -123,17 +123,17 @@ def test_a_disagreement_is_decided_with_both_answers_in_sight(file):
 
 def test_only_the_label_is_known_of_an_answer_that_no_journal_holds():
     disputed = Label("acme/arm#1", *msgspec.structs.astuple(UPDATE), ("library-update", "other"), "disputed")
-    assert opinions(disputed, []) == [UPDATE, Given("other", None, "", "")]
+    assert opinions(disputed, []) == [UPDATE, GivenLabel("other", None, "", "")]
 
 
 @pytest.mark.parametrize(
     ("given", "fault"),
     [
-        (Given("library-update", None, "build", "x"), "kind"),
-        (Given("other", "ros", "none", "x"), "kind"),
-        (Given("other", None, "later", "x"), "phase"),
-        (Given("bug", None, "none", "x"), "label"),
-        (Given("other", None, "none", "  "), "reason"),
+        (GivenLabel("library-update", None, "build", "x"), "kind"),
+        (GivenLabel("other", "ros", "none", "x"), "kind"),
+        (GivenLabel("other", None, "later", "x"), "phase"),
+        (GivenLabel("bug", None, "none", "x"), "label"),
+        (GivenLabel("other", None, "none", "  "), "reason"),
     ],
 )
 @pytest.mark.parametrize("mode", ["first", "second", "disagreements"])
@@ -146,7 +146,7 @@ def test_answers_that_break_the_guide_are_refused(given, fault, mode):
 def test_a_refused_answer_leaves_no_trace(file):
     with Session(file, "ann", "first", REPORTS) as session:
         with pytest.raises(ValueError):
-            session.answer(Given("other", None, "none", ""))
+            session.answer(GivenLabel("other", None, "none", ""))
         assert session.current == REPORTS[0]
     assert read_journal(journal_of(file)) == []
     assert not file.exists()

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.corpus.report import CorpusError, Report, write_rows
-from rosimpact.corpus.store import Gathered, Page, Store, Taken, open_reports, store_path
+from rosimpact.corpus.store import GatheredReport, Page, Store, Taken, open_reports, store_path
 
 NAMES = ("a/b#1", "A/b#2", "a/c#1", "a/b#3")
 
@@ -32,7 +32,7 @@ def path(tmp_path) -> Path:
 def test_a_store_and_a_file_give_the_same_reports(path, tmp_path):
     reports = [report("a/b#1", tags=("bug",)), report("ros-answers:7", author="Ann", licence="CC-BY-SA-3.0")]
     with Store(path) as store:
-        store.put([Gathered(one) for one in reports])
+        store.put([GatheredReport(one) for one in reports])
     write_rows(tmp_path / "corpus.jsonl", reports)
     assert list(open_reports(path)) == list(open_reports(tmp_path / "corpus.jsonl")) == reports
 
@@ -46,7 +46,7 @@ def test_where_the_store_is(monkeypatch, tmp_path):
 
 def test_a_page_is_written_with_its_state_or_not_at_all(path):
     with Store(path) as store:
-        store.take("job", Page([Gathered(report("a/b#1"))], {"after": 1}))
+        store.take("job", Page([GatheredReport(report("a/b#1"))], {"after": 1}))
 
         class Broken(Report, frozen=True):
             @property
@@ -54,7 +54,7 @@ def test_a_page_is_written_with_its_state_or_not_at_all(path):
                 raise RuntimeError("a fault in the middle of a page")
 
         with pytest.raises(Exception, match=r".*"):
-            store.take("job", Page([Gathered(report("a/b#2")), None], {"after": 2}))  # type: ignore[list-item]
+            store.take("job", Page([GatheredReport(report("a/b#2")), None], {"after": 2}))  # type: ignore[list-item]
         assert [one.id for one in store.reports()] == ["a/b#1"]
         assert store.state("job") == {"after": 1}
 
@@ -70,7 +70,7 @@ def test_a_file_is_made_for_reports_and_for_nothing_less(path):
     with Store(path) as store:
         store.want(["A/b#1"])
         store.take("job", Page([], {"since": "2024"}))
-        store.put([Gathered(report("a/b#1"))])
+        store.put([GatheredReport(report("a/b#1"))])
     with Store(path) as store:
         assert store.state("job") == {"since": "2024"}
         assert [one.id for one in store.reports()] == ["A/b#1"]
@@ -80,8 +80,8 @@ def test_a_file_that_another_has_made_meanwhile_is_gone_on_with(path):
     with Store(path) as late, Store(path) as early:
         late.take("job", Page([], {"after": 1}))
         late.take("own", Page([], {"after": 5}))
-        early.take("job", Page([Gathered(report("a/b#1"))], {"after": 2}))
-        late.put([Gathered(report("a/b#2"))])
+        early.take("job", Page([GatheredReport(report("a/b#1"))], {"after": 2}))
+        late.put([GatheredReport(report("a/b#2"))])
         assert (late.state("job"), late.state("own")) == ({"after": 2}, {"after": 5})
         assert [one.id for one in late.reports()] == ["a/b#1", "a/b#2"]
 
@@ -94,25 +94,25 @@ def test_a_place_for_no_file_is_refused_at_once(tmp_path):
 
 def test_ids_of_github_are_the_same_in_any_case(path):
     with Store(path) as store:
-        assert store.put([Gathered(report("ANYbotics/x#1"))]).new == 1
-        assert store.put([Gathered(report("anybotics/x#1", body="edited"))]).changed == 1
+        assert store.put([GatheredReport(report("ANYbotics/x#1"))]).new == 1
+        assert store.put([GatheredReport(report("anybotics/x#1", body="edited"))]).changed == 1
         assert [one.body for one in store.reports()] == ["edited"]
 
 
 def test_what_is_the_same_is_not_written_anew(path):
     ticks = itertools.count(1.0)
     with Store(path, clock=lambda: next(ticks)) as store:
-        store.put([Gathered(report("a/b#1"))])
-        assert store.put([Gathered(report("a/b#1"))]).same == 1
+        store.put([GatheredReport(report("a/b#1"))])
+        assert store.put([GatheredReport(report("a/b#1"))]).same == 1
         assert store._all("SELECT first, checked, changed FROM report") == [(1.0, 2.0, 1.0)]
 
 
 def test_one_reads_while_another_writes(path):
     with Store(path) as writer:
-        writer.put([Gathered(report(f"a/b#{n}")) for n in range(500)])
+        writer.put([GatheredReport(report(f"a/b#{n}")) for n in range(500)])
         reader = open_reports(path)
         first = next(reader)
-        writer.put([Gathered(report(f"a/c#{n}")) for n in range(500)])
+        writer.put([GatheredReport(report(f"a/c#{n}")) for n in range(500)])
         assert len([first, *reader]) == 500, "a reader sees what was there when it began"
 
 
@@ -121,7 +121,7 @@ def test_many_write_at_once(path):
     def write(name: str) -> None:
         with Store(path) as store:
             for n in range(30):
-                store.take(name, Page([Gathered(report(f"{name}/x#{n}"))], {"after": n}))
+                store.take(name, Page([GatheredReport(report(f"{name}/x#{n}"))], {"after": n}))
 
     threads = [threading.Thread(target=write, args=(f"w{n}",)) for n in range(4)]
     for thread in threads:
@@ -139,7 +139,7 @@ def test_many_make_the_file_at_once(path):
     def make() -> None:
         try:
             with Store(path) as store:
-                store.put([Gathered(report("a/b#1"))])
+                store.put([GatheredReport(report("a/b#1"))])
         except Exception as error:
             faults.append(error)
 
@@ -181,7 +181,7 @@ def test_a_database_of_something_else_is_left_alone(path):
 
 def test_a_store_of_a_newer_version_is_not_touched(path):
     with Store(path) as store:
-        store.put([Gathered(report("a/b#1"))])
+        store.put([GatheredReport(report("a/b#1"))])
     with sqlite3.connect(path) as db:
         db.execute("PRAGMA user_version = 99")
     db.close()
@@ -201,11 +201,11 @@ def test_reports_of_a_file_that_is_not_there(tmp_path):
 
 def test_moves_there_and_back_lose_nothing(path):
     with Store(path) as store:
-        store.put([Gathered(report("old/x#1")), Gathered(report("old/x#2"))])
-        store.take("job", Page([Gathered(report("new/x#1"), asked="old/x#1")], {}, moved=("old/x", "new/x")))
+        store.put([GatheredReport(report("old/x#1")), GatheredReport(report("old/x#2"))])
+        store.take("job", Page([GatheredReport(report("new/x#1"), asked="old/x#1")], {}, moved=("old/x", "new/x")))
         assert [one.id for one in store.reports()] == ["new/x#1", "new/x#2"]
         assert store.report("old/x#2") == store.report("new/x#2")
-        store.take("job", Page([Gathered(report("old/x#1"), asked="new/x#1")], {}, moved=("new/x", "old/x")))
+        store.take("job", Page([GatheredReport(report("old/x#1"), asked="new/x#1")], {}, moved=("new/x", "old/x")))
         assert [one.id for one in store.reports()] == ["old/x#1", "old/x#2"]
         assert store.report("new/x#1") == store.report("old/x#1")
 
@@ -227,11 +227,11 @@ def test_whatever_happens_to_ids_no_report_is_there_twice(tmp_path_factory, step
     with Store(path) as store:
         for what, id, other in steps:
             if what == "put":
-                store.put([Gathered(report(id, body=other))])
+                store.put([GatheredReport(report(id, body=other))])
                 found = store.report(id)
                 assert found is not None and found.body == other
             elif what == "move":
-                store.put([Gathered(report(other), asked=id)])
+                store.put([GatheredReport(report(other), asked=id)])
                 assert store.report(id) == store.report(other) is not None
             elif what == "want":
                 store.want([id])
@@ -251,7 +251,7 @@ BLOBS = [None, 7, "text", b"", b"no zlib", zlib.compress(b"no JSON"), zlib.compr
 @pytest.mark.parametrize("column", ["report.report", "report.raw", "gathering.state", "report.id"])
 def test_a_damaged_row_is_named(path, column, value):
     with Store(path) as store:
-        store.take("job", Page([Gathered(report("a/b#1"), raw=b"answer")], {"after": 1}))
+        store.take("job", Page([GatheredReport(report("a/b#1"), raw=b"answer")], {"after": 1}))
     table, _, name = column.partition(".")
     with contextlib.closing(sqlite3.connect(path)) as db, contextlib.suppress(sqlite3.IntegrityError):
         db.execute(f"UPDATE {table} SET {name} = ?", [value])

@@ -5,9 +5,9 @@ from rosimpact.impact.facts import cpp
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.kinds import decode, encode, search
 from rosimpact.impact.facts.searches import WordUse
-from rosimpact.impact.facts.usage import Pattern, Rows, Table
+from rosimpact.impact.facts.usage import Pattern, Rows, UsageTable
 
-TABLE = Table({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
+TABLE = UsageTable({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
 CPP = [
     ("// changed\nint changed;\n", (), (), [WordUse("changed", 2, 5)]),
     ("int changed = 2;\n", (), (), [WordUse("changed", 1, 5, (), True)]),
@@ -63,5 +63,11 @@ def test_what_a_file_declares(text, types, spaces, tf2):
 
 
 def test_tables_that_differ_have_other_stamps():
-    stamps = {Table({}).stamp, Table({}, ["a"]).stamp, TABLE.stamp, Table(TABLE.patterns).stamp, Rows([]).stamp}
-    assert len(stamps) == 5 and Table(TABLE.patterns, TABLE.words).stamp == TABLE.stamp
+    stamps = {
+        UsageTable({}).stamp,
+        UsageTable({}, ["a"]).stamp,
+        TABLE.stamp,
+        UsageTable(TABLE.patterns).stamp,
+        Rows([]).stamp,
+    }
+    assert len(stamps) == 5 and UsageTable(TABLE.patterns, TABLE.words).stamp == TABLE.stamp

@@ -5,7 +5,7 @@ from textwrap import dedent
 from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
-from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.nodes import BuiltPackage
 
 DRIVER = """
     class Driver : public rclcpp::Node {
@@ -53,5 +53,5 @@ def robot(**sources: str) -> Graph:
     """The graph of driver, planner and mover; sources: other text for one of them, or further packages."""
     texts = {"driver": DRIVER, "planner": PLANNER, "mover": MOVER, **sources}
     files = {f"{name}/{name}.cpp": flow_cpp.extract(dedent(text).encode()) for name, text in texts.items() if text}
-    built = [Built(path.split("/")[0], {path.split("/")[0]: (path,)}, {}, {}, {}, {}) for path in files]
+    built = [BuiltPackage(path.split("/")[0], {path.split("/")[0]: (path,)}, {}, {}, {}, {}) for path in files]
     return Join(files, lambda path: path.split("/")[0], built, 2).graph("ws")

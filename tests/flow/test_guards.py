@@ -6,7 +6,7 @@ import sys
 import pytest
 import z3
 from rosimpact.impact.logic.guard_solver import limited_questions
-from rosimpact.impact.logic.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
+from rosimpact.impact.logic.guards import NameReading, compare, compare_ways, explain, explain_ways, impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 
@@ -171,8 +171,8 @@ def test_python(old, new, kind):
 def test_renamed_variables():
     old, new = cpp("if: state_.ok_ && ns::Kind::A == kind"), cpp("if: state_.fine_ && kind == ns::Sort::A")
     assert compare(old, new) == "changed"
-    assert compare(old, new, Reading({"ok_": "fine_", "Kind": "Sort"})) == "equivalent"
-    assert compare(cpp("if: a && !b"), cpp("if: b && !a"), Reading({"a": "b", "b": "a"})) == "equivalent"
+    assert compare(old, new, NameReading({"ok_": "fine_", "Kind": "Sort"})) == "equivalent"
+    assert compare(cpp("if: a && !b"), cpp("if: b && !a"), NameReading({"a": "b", "b": "a"})) == "equivalent"
 
 
 def test_ways():
@@ -203,7 +203,9 @@ def test_too_much_work_is_changed():
     alone = [f"!p{i}_{hole} || !p{j}_{hole}" for hole in holes for j in birds for i in range(j)]
     pigeons = cpp(*(f"if: {text}" for text in sit + alone))
     assert (
-        compare(cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, Reading(milliseconds=5))
+        compare(
+            cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, NameReading(milliseconds=5)
+        )
         == "changed"
     )
 

@@ -272,7 +272,7 @@ def test_json_is_as_its_schema_says(between: Between):
     schema = json.loads(impact_report.schema())
     page = Path(__file__).parents[2] / "docs/impact.schema.json"
     assert page.read_text() == impact_report.schema(), "rosimpact impact --schema > docs/impact.schema.json"
-    told = impact_report.Told("1.2", "ws", "", "main")
+    told = impact_report.ImpactHeading("1.2", "ws", "", "main")
     document = json.loads(impact_report.as_json(between(ROWS["a condition"].files), told))
     jsonschema.validate(document, schema)
     (change,) = document["changes"]

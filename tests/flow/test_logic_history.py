@@ -9,8 +9,8 @@ from typing import NamedTuple
 import pygit2
 import pytest
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.logic.history import History
-from rosimpact.impact.logic.repository import Coverage, Logic, Range, chosen, read
+from rosimpact.impact.logic.history import CommitHistory
+from rosimpact.impact.logic.repository import Logic, LogicCoverage, Range, chosen, read
 from rosimpact.impact.report.logic import apart, as_json, text
 from rosimpact.impact.report.timeline import render
 
@@ -556,7 +556,7 @@ def test_the_first_commit_has_all_its_statements_new(made: Made) -> None:
 def test_a_range_knows_all_of_its_newest_commit(made: Made, tmp_path) -> None:
     with Store(tmp_path) as store:
         found = read(made.path, Range(made.commits["ask for less"], 1), store)
-    assert found.coverage == Coverage(1, 1, 0, 5, 5, 0, ())
+    assert found.coverage == LogicCoverage(1, 1, 0, 5, 5, 0, ())
 
 
 def test_merges_say_nothing_and_their_branches_speak(made: Made) -> None:
@@ -616,13 +616,13 @@ def test_ranges(made: Made, tmp_path, asked, first: str, last: str, number: int)
 def test_a_date_that_is_none_is_refused(made: Made, since: str) -> None:
     if since:
         with pytest.raises(ValueError, match="is no date"):
-            History(made.path).commits(since=since)
+            CommitHistory(made.path).commits(since=since)
     else:
-        assert History(made.path).commits(since=since)
+        assert CommitHistory(made.path).commits(since=since)
 
 
 def test_packages_are_found_at_every_commit(made: Made) -> None:
-    history = History(made.path)
+    history = CommitHistory(made.path)
     names = {name: (state.path, state.ros) for name, state in history.packages(made.commits["start"]).items()}
     assert names == {
         "talker": ("talker", 1), "listener": ("listener", 1), "watch": ("watch", 1), "camera": ("camera", 2),

@@ -2,8 +2,8 @@
 
 import pytest
 from rosimpact.impact.facts.cpp import flow as flow_cpp
-from rosimpact.impact.logic.history import File, State
-from rosimpact.impact.logic.statements import Before, Digest, digest
+from rosimpact.impact.logic.history import PackageFile, PackageState
+from rosimpact.impact.logic.statements import Before, PackageStatements, digest
 
 TALKER = """
 #include "types.h"
@@ -46,12 +46,12 @@ class Package:
     def __init__(self) -> None:
         self.known = {}
 
-    def digest(self, files: dict[str, str], before: Before | None = None) -> Digest:
-        listed = tuple(File(path, str(hash(text)), "cpp") for path, text in sorted(files.items()))
+    def digest(self, files: dict[str, str], before: Before | None = None) -> PackageStatements:
+        listed = tuple(PackageFile(path, str(hash(text)), "cpp") for path, text in sorted(files.items()))
         for path, text in files.items():
             self.known.setdefault((path, text), flow_cpp.extract(text.encode()))
         facts = {path: self.known[path, text] for path, text in files.items()}
-        return digest(State("talk", "", 1, listed, b""), facts, before)
+        return digest(PackageState("talk", "", 1, listed, b""), facts, before)
 
 
 @pytest.mark.parametrize("change", CHANGES)

@@ -2,22 +2,22 @@
 
 import pytest
 from msgspec import structs
-from rosimpact.impact.logic.changes import Change, Reached
+from rosimpact.impact.logic.changes import LogicChange, ReachedSubscriber
 from rosimpact.impact.logic.history import Commit
-from rosimpact.impact.logic.repository import Coverage, Logic
+from rosimpact.impact.logic.repository import Logic, LogicCoverage
 from rosimpact.impact.report.timeline import render
 
 FIRST = Commit("a" * 40, "", "2020-01-01T00:00:00Z", "Wait for a scan")
 LAST = Commit("b" * 40, "a" * 40, "2024-05-29T00:00:00Z", "Drop the timer")
-READER = Reached("viewer", "viewer/viewer", "/cloud", "Viewer::onCloud", "viewer/viewer.cpp", 40)
-TIGHTENED = Change(
+READER = ReachedSubscriber("viewer", "viewer/viewer", "/cloud", "Viewer::onCloud", "viewer/viewer.cpp", 40)
+TIGHTENED = LogicChange(
     "tightened", "amcl", "amcl/amcl.cpp", 13, "Amcl::onScan", "amcl/amcl", "cloud", ("/cloud",), "a_msgs/Cloud",
     old="map_", new="map_ && ready_", why="only when `ready_` too", reaches=(READER,),
 )  # fmt: skip
 GONE = structs.replace(
     TIGHTENED, kind="gone", package="beep", path="beep/beep.py", topic="beeps", new=None, why="", reaches=()
 )
-LOGIC = Logic("repo", "HEAD", (LAST, FIRST), ((LAST, GONE), (FIRST, TIGHTENED)), Coverage(2, 2))
+LOGIC = Logic("repo", "HEAD", (LAST, FIRST), ((LAST, GONE), (FIRST, TIGHTENED)), LogicCoverage(2, 2))
 PAYLOAD = "</script><img src=x onerror=window.hacked=1>`\u2028{{data}}"
 
 
@@ -64,14 +64,14 @@ def test_hostile_names_stay_names(page):
     odd = structs.replace(
         TIGHTENED, package=PAYLOAD, path=PAYLOAD, node=PAYLOAD, topic=PAYLOAD, new=PAYLOAD, why=PAYLOAD
     )
-    browser = page(Logic(PAYLOAD, PAYLOAD, (FIRST,), ((FIRST, odd),), Coverage(1, 1)))
+    browser = page(Logic(PAYLOAD, PAYLOAD, (FIRST,), ((FIRST, odd),), LogicCoverage(1, 1)))
     assert browser.execute_script("return window.hacked") is None
     assert browser.execute_script("return document.querySelectorAll('main img').length") == 0
     assert "onerror=window.hacked=1>" in texts(browser, ".change .place")[0]
 
 
 def test_nothing_changed(page):
-    browser = page(Logic("repo", "HEAD", (), (), Coverage(0, 0)))
+    browser = page(Logic("repo", "HEAD", (), (), LogicCoverage(0, 0)))
     assert texts(browser, "#count") == ["0 of 0 changes in 0 commits"]
     assert not browser.find_element("id", "bars").is_displayed()
 

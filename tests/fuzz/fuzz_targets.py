@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import msgspec
 from fuzz_words import WORDS
 from rosimpact.corpus import robust
-from rosimpact.corpus.polite import Answer
+from rosimpact.corpus.polite import ServiceAnswer
 from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
 from rosimpact.databuild.surface import unpacked_deb
@@ -51,7 +51,7 @@ from rosimpact.impact.model.tracked_names import watched
 from rosimpact.impact.report import github, markdown_text
 from rosimpact.impact.targets import capture, resolve, version
 from rosimpact.impact.targets.distro.distro import TargetError
-from rosimpact.impact.tree import Entry, ignore, working
+from rosimpact.impact.tree import TreeEntry, ignore, working
 
 for _module, _ in kinds.EXTRACTORS.values():
     if _module:  # they are imported when they are first needed, which no check should pay for
@@ -337,8 +337,8 @@ class _Files:
         self.problems, self.skipped, self.aliases = [], [], {}
         self.repositories: dict[str, str] = {}
 
-    def entries(self) -> list[Entry]:
-        return [Entry(path, len(data)) for path, data in sorted(self.files.items())]
+    def entries(self) -> list[TreeEntry]:
+        return [TreeEntry(path, len(data)) for path, data in sorted(self.files.items())]
 
     def read(self, path: str, limit: int = 0) -> bytes:
         if path not in self.files:
@@ -514,7 +514,7 @@ def reports(data: bytes) -> None:
         except CorpusError:
             continue
     try:
-        item = Answer(200, "", {}, data).json()
+        item = ServiceAnswer(200, "", {}, data).json()
     except ValueError:
         return
     if isinstance(item, dict):

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 import pytest
 from rosimpact.databuild.surface_changes import Lines
-from rosimpact.impact.facts.cpp.code import Code
+from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.surface import Entity, offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
-from rosimpact.impact.model.cpp.resolver import Known, Resolver
+from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type
 from rosimpact.impact.targets.surface.changes import unpack
-from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.
@@ -73,7 +73,7 @@ def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None)
             build = BuildSurface(package, version, headers=(Header(path, f"include/{path}", path),))
             surfaces[package] = Surface(package, version, build, PythonSurface(package),
                                         ((path, header(codes[number].encode())),))  # fmt: skip
-        state = State(surfaces)
+        state = RepositorySurfaces(surfaces)
         for package in surfaces:
             lines.add(package, version, (2,), state)
     packed = lines.packed()
@@ -91,7 +91,7 @@ def changes() -> Changes:
 
 
 def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
-    return Resolver([Known(Code(one.encode())) for one in (text, *headers)], vocabulary, None)
+    return Resolver([KnownFile(CppCode(one.encode())) for one in (text, *headers)], vocabulary, None)
 
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
@@ -279,7 +279,7 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
      ("std::vector< A > v", "std::vector<A>"), ("A * const * p", "A*const*"), ("const A", "const A")],
 )  # fmt: skip
 def test_the_type_of_a_parameter(parameter, type_):
-    (function,) = Code(f"void f({parameter});".encode()).file.names
+    (function,) = CppCode(f"void f({parameter});".encode()).file.names
     assert [parameter_type(one) for one in function.parameters] == [type_]
 
 

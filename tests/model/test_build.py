@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.conditions.cmake import Token
 from rosimpact.impact.facts.cmake import extract
-from rosimpact.impact.model.cmake.build import Build, Declared
+from rosimpact.impact.model.cmake.build import Build, DeclaredPackages
 from rosimpact.impact.model.cmake.conditions import evaluate, version_key
 from rosimpact.impact.model.cmake.genex import reduced, rejoin
 from rosimpact.impact.model.cmake.interpret import extras_of, interpret
@@ -594,7 +594,7 @@ def test_conditions_are_three_valued(text, expected):
     tokens = [Token(part, False, True, True) for part in text.split()]
     tree = Tree({})
     assert (
-        evaluate(tokens, Interpreter("p", tree.read, tree.exists, tree.glob, "p", Declared(), lambda name: ()))
+        evaluate(tokens, Interpreter("p", tree.read, tree.exists, tree.glob, "p", DeclaredPackages(), lambda name: ()))
         is expected
     )
 
@@ -957,7 +957,7 @@ def test_same_messages_as_cmake_traces(name, tmp_path):
     subprocess.run(command, check=True, capture_output=True)
     expected = traced(trace)
     tree = Tree({"pkg/CMakeLists.txt": text})
-    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", Declared(), lambda package: ())
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", DeclaredPackages(), lambda package: ())
     run.said = []
     run.run()
     assert run.said == expected
@@ -1021,7 +1021,7 @@ def test_same_messages_as_cmake_traces_over_several_files(tmp_path):
     subprocess.run([*command, "-S", str(tmp_path / "pkg"), "-B", str(tmp_path / "b")], check=True, capture_output=True)
     expected = traced(trace, "pkg")
     tree = Tree({f"pkg/{path}": text for path, text in PROJECT.items()})
-    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", Declared(), lambda package: ())
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", DeclaredPackages(), lambda package: ())
     run.said = []
     run.run()
     assert run.said == expected

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.launch.follow import follow
-from rosimpact.impact.model.launch.result import Setting, SettingFile, file_values
-from rosimpact.impact.model.launch.text import CannotTell, Text, evaluate, ros1_value
+from rosimpact.impact.model.launch.result import LaunchParameter, SettingFile, file_values
+from rosimpact.impact.model.launch.text import CannotTell, LaunchText, evaluate, ros1_value
 
 
 class Files:
@@ -320,7 +320,7 @@ def test_parameters_of_ros2():
     assert values(launch, 2)["only"] == "a"
     assert values(launch, 2)["all"] is True
     rate = launch.values(launch.started[0])["rate"]
-    assert isinstance(rate, Setting)
+    assert isinstance(rate, LaunchParameter)
     assert rate.text.assumed == ("rate",)
     assert [u.what for u in launch.unresolved] == ["parameters `gone.yaml`"]
 
@@ -337,7 +337,7 @@ def test_parameters_of_ros2():
 def test_which_node_a_file_means(keys, name, holds):
     entries = parameters(f"{keys}: {{ros__parameters: {{x: 1}}}}" if "*" not in keys else
                          f"'{keys}': {{ros__parameters: {{x: 1}}}}").entries  # fmt: skip
-    setting = SettingFile(Text("f", "f"), entries, None)  # type: ignore[arg-type]
+    setting = SettingFile(LaunchText("f", "f"), entries, None)  # type: ignore[arg-type]
     assert bool(file_values(setting, name)) == holds
 
 

@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.conditions import Environment, all_hold
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.cmake.build import Defined
+from rosimpact.impact.model.cmake.build import DefinedMacro
 from rosimpact.impact.model.cmake.interpret import interpret
 from rosimpact.impact.model.macros import Macros
 
@@ -54,20 +54,20 @@ def on(version, distro="humble"):
 @pytest.mark.parametrize(
     ("macros", "condition", "environment", "holds"),
     [
-        ([Defined("FOXY", "", "", (OLD,))], IFDEF, on("2.4.0"), True),
-        ([Defined("FOXY", "", "", (OLD,))], IFDEF, on("16.0.0"), False),
-        ([Defined("FOXY", "", "", (OLD,))], IFNDEF, on("2.4.0"), False),
-        ([Defined("FOXY", "", "", (OLD,))], IFDEF, on(None), None),
-        ([Defined("FOXY", "", "", (OLD,)), Defined("FOXY", "", "", (HUMBLE,))], IFDEF, on("16.0.0"), True),
-        ([Defined("FOXY", "", "", (OLD, HUMBLE))], IFDEF, on("2.4.0", "foxy"), False),
-        ([Defined("FOXY", "1", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), True),
-        ([Defined("FOXY", "0", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), None),
-        ([Defined("FOXY", "", "", ())], IFDEF, on(None), True),
+        ([DefinedMacro("FOXY", "", "", (OLD,))], IFDEF, on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "", "", (OLD,))], IFDEF, on("16.0.0"), False),
+        ([DefinedMacro("FOXY", "", "", (OLD,))], IFNDEF, on("2.4.0"), False),
+        ([DefinedMacro("FOXY", "", "", (OLD,))], IFDEF, on(None), None),
+        ([DefinedMacro("FOXY", "", "", (OLD,)), DefinedMacro("FOXY", "", "", (HUMBLE,))], IFDEF, on("16.0.0"), True),
+        ([DefinedMacro("FOXY", "", "", (OLD, HUMBLE))], IFDEF, on("2.4.0", "foxy"), False),
+        ([DefinedMacro("FOXY", "1", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "0", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "", "", ())], IFDEF, on(None), True),
         # Of what nothing defines nothing is known: another package's header or the user may.
-        ([Defined("OTHER", "", "", ())], IFDEF, on("2.4.0"), None),
+        ([DefinedMacro("OTHER", "", "", ())], IFDEF, on("2.4.0"), None),
         # What only some of the targets that compile a file are given.
-        ([Defined("FOXY", "", "node", (OLD,))], IFDEF, on("2.4.0"), True),
-        ([Defined("FOXY", "", "tool", (OLD,))], IFDEF, on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "", "node", (OLD,))], IFDEF, on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "", "tool", (OLD,))], IFDEF, on("2.4.0"), None),
     ],
 )
 def test_what_a_condition_asks(macros, condition, environment, holds):
@@ -75,4 +75,4 @@ def test_what_a_condition_asks(macros, condition, environment, holds):
 
 
 def test_a_macro_that_sources_define_too_is_left_alone():
-    assert Macros([Defined("FOXY", "", "", (OLD,))], {"FOXY"}).asked((IFDEF,), ("node",)) == (IFDEF,)
+    assert Macros([DefinedMacro("FOXY", "", "", (OLD,))], {"FOXY"}).asked((IFDEF,), ("node",)) == (IFDEF,)

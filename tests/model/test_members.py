@@ -3,11 +3,11 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.impact.facts.cpp.code import Code
+from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.python.source import extract
-from rosimpact.impact.model.cpp.resolver import Known, Resolver
+from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
-from rosimpact.impact.model.members import Scope, interface_named, interfaces_included
+from rosimpact.impact.model.members import InterfaceScope, interface_named, interfaces_included
 from rosimpact.impact.model.python.members import changing_members, interfaces_used
 from rosimpact.impact.targets.surface.fields import Fields
 
@@ -41,14 +41,14 @@ ROS2 = ("arm_msgs/msg/arm.hpp", "arm_msgs/srv/start.hpp", "arm_msgs/action/move.
 ROS1 = ("arm_msgs/Arm.h", "arm_msgs/Start.h", "arm_msgs/MoveAction.h")
 
 
-def found_in(text: str, scope: Scope, headers=(), guess=False):
-    known = [Known(Code(each.encode())) for each in (text, *headers)]
+def found_in(text: str, scope: InterfaceScope, headers=(), guess=False):
+    known = [KnownFile(CppCode(each.encode())) for each in (text, *headers)]
     found = MemberUses(Resolver(known, None, scope)).found(sorted(scope.changing), guess)
     return sorted(found, key=lambda use: use.offset)
 
 
 def cpp(text: str, fields: Fields, includes=ROS2, headers=()) -> list[str]:
-    scope = Scope(interfaces_included(includes, fields)[0], fields)
+    scope = InterfaceScope(interfaces_included(includes, fields)[0], fields)
     found = found_in(text, scope, headers)
     return [f"{f.interface.short}.{f.section}.{f.member}" for f in found if f.sure]
 
@@ -138,7 +138,7 @@ def test_two_classes_of_one_name_tell_nothing(fields):
     ],
 )
 def test_names_that_can_mean_nothing_else(text, found, fields):
-    scope = Scope(interfaces_included(ROS2, fields)[0], fields)
+    scope = InterfaceScope(interfaces_included(ROS2, fields)[0], fields)
     assert [f.member for f in found_in(text, scope, guess=True) if not f.sure] == found
 
 
@@ -191,7 +191,7 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
 )  # fmt: skip
 def test_python(text, found, fields):
     uses = extract((IMPORTS + text).encode()).fields
-    scope = Scope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
+    scope = InterfaceScope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
     members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in changing_members(uses, scope)}
     assert sorted(members) == found
 

@@ -3,7 +3,7 @@
 import pytest
 from rosimpact.impact.model.flow.names import (
     NameRefused,
-    Rule,
+    RemappingRule,
     canonical,
     joined,
     namespace_of,
@@ -87,12 +87,12 @@ def test_names_that_ros2_refuses(name):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("scan:=/lidar/scan", Rule("scan", "/lidar/scan")),
-        ("talker:chatter:=news", Rule("chatter", "news", "talker")),
-        ("talker:__ns:=/a", Rule("__ns", "/a", "talker")),
-        ("rostopic://a:=b", Rule("a", "b", "", "topic")),
-        ("n:rosservice:///a:=b", Rule("/a", "b", "n", "service")),
-        ("~/a:=b", Rule("~/a", "b")),
+        ("scan:=/lidar/scan", RemappingRule("scan", "/lidar/scan")),
+        ("talker:chatter:=news", RemappingRule("chatter", "news", "talker")),
+        ("talker:__ns:=/a", RemappingRule("__ns", "/a", "talker")),
+        ("rostopic://a:=b", RemappingRule("a", "b", "", "topic")),
+        ("n:rosservice:///a:=b", RemappingRule("/a", "b", "n", "service")),
+        ("~/a:=b", RemappingRule("~/a", "b")),
         ("a", None),
         (":=b", None),
         ("a:=", None),

@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.facts.words import words_of
-from rosimpact.impact.model.settings import Named, Setting, in_launch, in_parameters, mentions_changing, named_in
+from rosimpact.impact.model.settings import NamedNode, Setting, in_launch, in_parameters, mentions_changing, named_in
 from rosimpact.impact.model.undeclared_parameters import means
 
 CHANGING = {
@@ -73,7 +73,7 @@ def test_the_plugins_of_a_node_are_known_together():
 
 def test_a_launch_file_tells_whose_name_a_node_has():
     def named(name, packages):
-        return Named("base_driver", "driver", name) if (name, set(packages)) == ("base", {"base_driver"}) else None
+        return NamedNode("base_driver", "driver", name) if (name, set(packages)) == ("base", {"base_driver"}) else None
 
     file = parameters(b"base:\n  ros__parameters:\n    old_rate: 1.0\n")
     assert list(in_parameters(file, CHANGING, named)) == [Setting("old_rate", "base_driver", "", "driver", 3)]
@@ -81,7 +81,9 @@ def test_a_launch_file_tells_whose_name_a_node_has():
 
 def test_a_name_that_another_package_has_is_not_guessed():
     text = b"base:\n  ros__parameters:\n    old_rate: 1.0\n"
-    assert list(in_parameters(parameters(text), CHANGING, lambda name, packages: Named("other", "driver", name))) == []
+    assert (
+        list(in_parameters(parameters(text), CHANGING, lambda name, packages: NamedNode("other", "driver", name))) == []
+    )
 
 
 PYTHON = b"""
@@ -138,8 +140,8 @@ def test_what_a_launch_file_sets(kind, data, expected):
 
 def test_nodes_and_their_names():
     assert list(named_in(extract(PYTHON, "launch_python")))[:2] == [
-        Named("base_driver", "driver", "base"),
-        Named("other", "driver", "driver"),
+        NamedNode("base_driver", "driver", "base"),
+        NamedNode("other", "driver", "driver"),
     ]
 
 

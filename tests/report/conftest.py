@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.analysis.findings import merge_diagnostics
-from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
+from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, SourceLines
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Edit, Rule
 from rosimpact.impact.rules.text import Text
@@ -95,7 +95,7 @@ def team_hits():
 
 
 def report_of(hits, files, names=NAMES, **changes) -> Report:
-    sources = Sources(files.get)
+    sources = SourceLines(files.get)
     findings = merge_diagnostics(hits, targets=names, rules=RULES, line_text=sources.line)
     targets = tuple(
         ReportedTarget(name, "humble" if name == "robot" else name, "2026-08-22", PLATFORMS[name], "rosimpact.toml")

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.analysis.report import cells
-from rosimpact.impact.report.columns import UNBROKEN, Piece, laid_out, shortened
+from rosimpact.impact.report.columns import UNBROKEN, LinePart, laid_out, shortened
 from rosimpact.impact.report.style import PLAIN
 
 
@@ -12,7 +12,12 @@ def lines(pieces, width, indent=2, hang=4):
     return list(laid_out(pieces, PLAIN._replace(width=width), indent, hang))
 
 
-PIECES = [Piece("publishes"), Piece("/scan"), Piece("", path="driver/sources/driver.cpp:12"), Piece("when a and b")]
+PIECES = [
+    LinePart("publishes"),
+    LinePart("/scan"),
+    LinePart("", path="driver/sources/driver.cpp:12"),
+    LinePart("when a and b"),
+]
 
 
 @pytest.mark.parametrize(
@@ -30,8 +35,8 @@ def test_a_line_is_broken_between_its_pieces(width, said):
 
 
 def test_a_piece_that_is_longer_than_a_line_is_broken_between_words():
-    long = Piece("when " + " and ".join(f"condition_{n}" for n in range(4)))
-    assert lines([Piece("publish"), long], 30) == [
+    long = LinePart("when " + " and ".join(f"condition_{n}" for n in range(4)))
+    assert lines([LinePart("publish"), long], 30) == [
         "  publish",
         "    when condition_0 and",
         "    condition_1 and",
@@ -41,8 +46,8 @@ def test_a_piece_that_is_longer_than_a_line_is_broken_between_words():
 
 
 def test_a_piece_with_a_hang_begins_where_it_stands():
-    nodes = Piece("/first, /second, /third, /fourth", hang=12)
-    assert lines([Piece("publishes"), nodes], 30) == ["  publishes  /first, /second,", "            /third, /fourth"]
+    nodes = LinePart("/first, /second, /third, /fourth", hang=12)
+    assert lines([LinePart("publishes"), nodes], 30) == ["  publishes  /first, /second,", "            /third, /fourth"]
 
 
 @pytest.mark.parametrize(
@@ -65,6 +70,6 @@ WORDS = st.lists(st.sampled_from(("a", "of", "漢字漢字", "condition_12")), m
 
 @given(st.lists(WORDS, min_size=1, max_size=5), st.integers(40, 120))
 def test_no_word_is_lost_and_no_line_too_long(texts, width):
-    found = lines(list(map(Piece, texts)), width)
+    found = lines(list(map(LinePart, texts)), width)
     assert " ".join(found).split() == " ".join(texts).split()
     assert all(cells(line) <= width for line in found)

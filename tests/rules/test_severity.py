@@ -4,7 +4,7 @@ from typing import cast
 
 import pytest
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.view import View
+from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.rules.severity import Doubt, doubts_of_place, severity
 
 
@@ -60,4 +60,4 @@ _IF = Condition("cpp", "X_VERSION > 3")
     ],
 )
 def test_doubts_of_a_place(ros, role, conditions, expected):
-    assert doubts_of_place(cast(View, _Place(ros)), role, conditions) == expected
+    assert doubts_of_place(cast(TargetView, _Place(ros)), role, conditions) == expected

@@ -12,7 +12,7 @@ from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.evidence import evidence_of, holds_on
 from rosimpact.impact.targets.providers.providers import default_providers
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.target import Change
+from rosimpact.impact.targets.target import ChangeInForce
 from rosimpact.impact.targets.version import at_least, parts
 
 OLD = """#pragma once
@@ -206,7 +206,7 @@ def test_what_people_reviewed_comes_before_what_was_derived():
 def test_the_evidence_gives_the_interval():
     row = next(row for row in all_rows() if row.last_in and row.kind == "api-removed")
     evidence = evidence_of(
-        Change(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
+        ChangeInForce(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
     )
     assert (evidence.last, evidence.first) == (row.last_in, row.removed_in)
 
@@ -218,7 +218,7 @@ def test_the_evidence_gives_the_interval():
 )
 def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected):
     use = all_uses()["cv::aruco::detectMarkers with 8 arguments"]
-    change = Change(use.kind, use.package, use.old, "", "removed", "4.6.0", "", use.source, True)
+    change = ChangeInForce(use.kind, use.package, use.old, "", "removed", "4.6.0", "", use.source, True)
     assert holds_on(evidence_of(change), DistroTarget(distro), default_providers()) is expected
 
 

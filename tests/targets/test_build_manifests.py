@@ -8,7 +8,7 @@ from pathlib import Path
 import pygit2
 import pytest
 from rosimpact.databuild.manifest_tags import add, read_clone, read_release_clone
-from rosimpact.databuild.manifests import Declared
+from rosimpact.databuild.manifests import DeclaredVersion
 from rosimpact.databuild.surface.releases import Release
 from rosimpact.impact.targets.snapshot import SCHEMA
 
@@ -100,11 +100,11 @@ def raw(tmp_path: Path) -> bytes:
 
 def test_only_what_the_database_lacks_comes_in(raw, tmp_path):
     declared = [
-        Declared("hydro", "sled", "0.9.0", "roscpp\tex", ""),
-        Declared("hydro", "dogs", "0.9.0", "tf\tb", "cmake"),
-        Declared("melodic", "sled", "1.1.0", "tf\tb", ""),  # a cache tells of it there
-        Declared("hydro", "cats", "0.9.0", "", ""),  # never released
-        Declared("ardent", "sled", "0.9.0", "", ""),  # no distro of the database
+        DeclaredVersion("hydro", "sled", "0.9.0", "roscpp\tex", ""),
+        DeclaredVersion("hydro", "dogs", "0.9.0", "tf\tb", "cmake"),
+        DeclaredVersion("melodic", "sled", "1.1.0", "tf\tb", ""),  # a cache tells of it there
+        DeclaredVersion("hydro", "cats", "0.9.0", "", ""),  # never released
+        DeclaredVersion("ardent", "sled", "0.9.0", "", ""),  # no distro of the database
     ]
     bigger, added = add(raw, declared)
     assert added == 2

@@ -10,7 +10,7 @@ from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import all_distros, build, plan
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 from rosimpact.impact.targets.surface.changes import unpack
-from rosimpact.impact.targets.surface.store import History, Surfaces
+from rosimpact.impact.targets.surface.store import SurfaceHistory, Surfaces
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
 <maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>{made_by}</buildtool_depend>
@@ -122,7 +122,7 @@ def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
         ("ros2-gbp/any-release", newer),
     ]
     packed = run(job).packages["rclcpp", 2]
-    assert History("rclcpp", packed.data, packed.includes).versions == (older, newer)
+    assert SurfaceHistory("rclcpp", packed.data, packed.includes).versions == (older, newer)
     assert list(unpack(packed.changes).events["c++"]) == ["of_jazzy", "of_kilted"]
     assert missing == ()
 
@@ -172,7 +172,9 @@ def test_one_version_of_two_repositories_is_two_states(tmp_path, monkeypatch):
         ("ros-controls/ros_control", "0.8.0", (1,)),
     ]
     packages = run(job).packages
-    has = {ros: History("", packed.data, packed.includes).names().keys() for (_, ros), packed in packages.items()}
+    has = {
+        ros: SurfaceHistory("", packed.data, packed.includes).names().keys() for (_, ros), packed in packages.items()
+    }
     assert ["one" in has[1], "two" in has[1], "one" in has[2], "two" in has[2]] == [True, False, False, True]
 
 

@@ -9,7 +9,7 @@ import socket
 
 import pytest
 from rosimpact.impact.targets.capture import (
-    Machine,
+    CapturedMachine,
     as_target,
     capture,
     differences,
@@ -168,4 +168,4 @@ def test_differences():
 
 def test_a_machine_without_a_distro_is_no_target():
     with pytest.raises(TargetError, match="names no ROS distro"):
-        as_target(Machine("", "", "", {}, {}, {}, {}, {}), "x", "x.json")
+        as_target(CapturedMachine("", "", "", {}, {}, {}, {}, {}), "x", "x.json")

@@ -238,7 +238,7 @@ def test_workers_that_cannot_do_it(start, clones, tmp_path, monkeypatch):
     # One of two has other code.
     cluster_.worker("other", digest="0123456789")
     cluster_.ready(2)
-    here = cluster.Code.here()
+    here = cluster.CodeState.here()
     other = f"has {here._replace(digest='0123456789')}, and here is {here}; install there what is installed here"
     assert other in refused()
 

@@ -8,7 +8,7 @@ from rosimpact.impact.targets.distro.known import releases
 from rosimpact.impact.targets.evidence import evidence_of, from_surfaces, of_offered, released_before, seen_on
 from rosimpact.impact.targets.evidence_record import Evidence
 from rosimpact.impact.targets.providers.providers import default_providers
-from rosimpact.impact.targets.surface.changes import Event, Line, Told
+from rosimpact.impact.targets.surface.changes import ChangeEvent, ComparedThing, Line
 from rosimpact.impact.targets.surface.offers import Offered
 from rosimpact.impact.targets.version import at_least
 
@@ -100,7 +100,7 @@ def test_the_version_before_is_one_of_the_same_generation():
 
 def line(*versions, approximate=(), **names):
     def event(place, kind):
-        return Event(place, (Told(kind, "function"),), None, None)
+        return ChangeEvent(place, (ComparedThing(kind, "function"),), None, None)
 
     return Line(versions, {"c++": {name: tuple(event(*one) for one in events) for name, events in names.items()}}, {},
                 approximate)  # fmt: skip

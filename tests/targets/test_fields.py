@@ -3,7 +3,7 @@
 import pygit2
 import pytest
 from rosimpact.databuild.fields import read_repository, table
-from rosimpact.impact.targets.surface.fields import History, before, default_fields, there
+from rosimpact.impact.targets.surface.fields import FieldsHistory, before, default_fields, there
 
 MANIFEST = """<package format="3"><name>arm_msgs</name><version>{}</version>
 <buildtool_depend>{}</buildtool_depend></package>"""
@@ -39,7 +39,7 @@ def released(folder, versions: dict[str, tuple[str, str, dict[str, str]]]) -> di
 
 
 @pytest.fixture
-def history(tmp_path) -> History:
+def history(tmp_path) -> FieldsHistory:
     made = released(
         tmp_path,
         {
@@ -51,7 +51,7 @@ def history(tmp_path) -> History:
         },
     )
     assert list(made) == ["arm_msgs 2"]
-    return History(made["arm_msgs 2"])
+    return FieldsHistory(made["arm_msgs 2"])
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_a_line_is_read_up_to_its_last_tag(history, version, read):
 def test_what_was_brought_to_an_older_line_may_be_in_its_later_releases(tmp_path, version, back):
     contents = {"2.0.0": ONE, "2.0.1": TWO, "2.1.0": ONE, "3.0.0": TWO}
     made = released(tmp_path, {v: (v, "ament_cmake", files) for v, files in contents.items()})
-    history = History(made["arm_msgs 2"])
+    history = FieldsHistory(made["arm_msgs 2"])
     assert history.may_be_back(history.spans("msg/New"), version) == back
 
 

@@ -8,8 +8,15 @@ from rosimpact.databuild.includes import beside, defined, direct, included, onto
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.surface import extract as header
-from rosimpact.impact.targets.providers.includes import Includes, Machine, Table, default, machine_of, offered
-from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.providers.includes import (
+    HeadersOfMachine,
+    Includes,
+    IncludesTable,
+    default,
+    machine_of,
+    offered,
+)
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.includes import compiled
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
@@ -64,7 +71,7 @@ def test_names_are_offered_by_headers_that_are_known():
 
 
 def test_the_table_has_only_what_surfaces_do_not_tell(tmp_path):
-    table = Table(
+    table = IncludesTable(
         ("string", "list", "vector"),
         {"arm": {"arm/a.h": "0.5 0;1.0 1;2.0 2", "arm/made.h": "0.5 2;2.0 -", "arm/b.h": "1.5 0"},
          "rope": {"rope/rope.h": "1.0 1"}},
@@ -79,7 +86,7 @@ def test_the_table_has_only_what_surfaces_do_not_tell(tmp_path):
         code += "namespace arm { class A; }" if version == "2.0" else ""
         new = tuple((f"arm/{name}.h", compiled(header(code.encode()))) for name in "ab")
         one = Surface("arm", version, BuildSurface("arm"), PythonSurface("arm"), new)
-        packing.add("arm", version, (2,), State({"arm": one}))
+        packing.add("arm", version, (2,), RepositorySurfaces({"arm": one}))
     write(tmp_path / "x", packing.packed())
     kept = beside(Surfaces(tmp_path / "x"), table)
     assert kept.owners == {
@@ -118,7 +125,7 @@ def test_versions_between_those_read(version, sparse, expected):
 
 def test_versions_are_added_to_a_table_that_keeps_what_it_tells():
     known = table_of({"pcl": {"1.0": {"a.h": ("b.h",), "c.h": ()}, "1.2": {"a.h": ()}}}, {"pcl"}, set())
-    known = Table(known.paths, known.owners, known.libraries, known.sparse, names={"pcl::A": ("a.h",)})
+    known = IncludesTable(known.paths, known.owners, known.libraries, known.sparse, names={"pcl::A": ("a.h",)})
     more = {"pcl": {"1.1": {"a.h": ("d.h",), "c.h": ()}}, "boost": {"1.74": {"e.h": ("a.h",)}}}
     both = Includes(onto(known, more, {"boost"}, {"boost"}))
     assert both.states("pcl", "a.h") == (((1, 0), ("b.h",)), ((1, 1), ("d.h",)), ((1, 2), ()))
@@ -129,7 +136,7 @@ def test_versions_are_added_to_a_table_that_keeps_what_it_tells():
 
 
 def test_a_header_may_be_gone_in_a_version():
-    machine = Machine(2, lambda owner, library: "1.4" if library else None, _includes())
+    machine = HeadersOfMachine(2, lambda owner, library: "1.4" if library else None, _includes())
     assert machine.includes("winch/hook.h") is None and machine.owner("winch/all.h") == ("winch", "1.4")
 
 

@@ -7,16 +7,16 @@ from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.python.surface import extract as module
-from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_cpp import availability_of_use
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
     Header,
-    LaunchFile,
-    Module,
-    Program,
+    InstalledLaunchFile,
+    InstalledModule,
+    InstalledProgram,
     PythonSurface,
     Surface,
 )
@@ -28,10 +28,10 @@ def surface(package, version, code="", python="", programs=(), path="", launches
         package,
         version,
         headers=(Header(path, f"include/{path}", path),),
-        programs=tuple(Program(name, f"lib/{package}", "binary") for name in programs),
-        launches=tuple(LaunchFile(path) for path in launches),
+        programs=tuple(InstalledProgram(name, f"lib/{package}", "binary") for name in programs),
+        launches=tuple(InstalledLaunchFile(path) for path in launches),
     )
-    modules = (Module(package, f"{package}/__init__.py", True, module(python.encode())),) if python else ()
+    modules = (InstalledModule(package, f"{package}/__init__.py", True, module(python.encode())),) if python else ()
     return Surface(package, version, build, PythonSurface(package, modules), ((path, header(code.encode())),))
 
 
@@ -46,7 +46,9 @@ def store(tmp_path):
     def made(*states, generations=(2,), approximate=()):
         packing = Packing()
         for state in states:
-            together = State({one.package: one for one in (state if isinstance(state, tuple) else (state,))})
+            together = RepositorySurfaces(
+                {one.package: one for one in (state if isinstance(state, tuple) else (state,))}
+            )
             for one in together.surfaces.values():
                 packing.add(one.package, one.version, generations, together, one.version in approximate)
         file = tmp_path / "surfaces.sqlite"

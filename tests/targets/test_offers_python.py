@@ -6,12 +6,12 @@ import pytest
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.python.surface import extract
-from rosimpact.impact.facts.python.uses import Given, PythonUse
-from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.facts.python.uses import CallArguments, PythonUse
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
 from rosimpact.impact.targets.surface.store import Surfaces
-from rosimpact.impact.targets.surface.surface import BuildSurface, Module, PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
 
 
 @pytest.fixture
@@ -23,10 +23,13 @@ def offers(tmp_path):
         for number, modules in enumerate(versions, 1):
             modules = {"arm": modules} if isinstance(modules, str) else modules
             python = PythonSurface(
-                "arm", tuple(Module(name, "", name == "arm", extract(text.encode())) for name, text in modules.items())
+                "arm",
+                tuple(
+                    InstalledModule(name, "", name == "arm", extract(text.encode())) for name, text in modules.items()
+                ),
             )
             one = Surface("arm", f"{number}.0.0", BuildSurface("arm", f"{number}.0.0"), python)
-            packing.add("arm", one.version, (2,), State({"arm": one}), one.version in approximate)
+            packing.add("arm", one.version, (2,), RepositorySurfaces({"arm": one}), one.version in approximate)
         write(tmp_path / "surfaces.sqlite", packing.packed())
         target = SimpleNamespace(ros=2, version={"arm": version}.get)
         return PythonOffers(Offers(target, Surfaces(tmp_path / "surfaces.sqlite")))
@@ -35,7 +38,7 @@ def offers(tmp_path):
 
 
 def use(name, how="name", positional=0, keywords=(), parameters=""):
-    given = Given(positional, tuple(keywords)) if how in ("call", "method") else None
+    given = CallArguments(positional, tuple(keywords)) if how in ("call", "method") else None
     return PythonUse(name, how, 1, 1, given, parameters)
 
 
@@ -180,7 +183,7 @@ def test_between_two_stored_versions_only_what_both_say_is_told(offers):
     ],
 )
 def test_whether_a_call_fits(parameters, positional, keywords, expected):
-    assert refused(Given(positional, keywords), read_parameters(parameters)) == expected
+    assert refused(CallArguments(positional, keywords), read_parameters(parameters)) == expected
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.databuild.sonames import Suite, libraries_of, symbols_of, table_of
-from rosimpact.impact.facts.elf import Asked, Elf
+from rosimpact.impact.facts.elf import AskedSymbolVersions, Elf
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.machine.loader import Loader
 from rosimpact.impact.targets.machine.shared_libraries import DescribedShelf, MachineShelf
@@ -141,7 +141,7 @@ LACKS = [
 @pytest.mark.parametrize(("distro", "platform", "library", "versions", "lacking"), LACKS)
 def test_versions_of_symbols_that_a_described_machine_lacks(distro, platform, library, versions, lacking):
     shelf = DescribedShelf(DistroTarget(distro, None, platform), SONAMES)
-    assert [tuple(lack) for lack in shelf.lacks(Asked(library, versions), ASKER, "") or ()] == lacking
+    assert [tuple(lack) for lack in shelf.lacks(AskedSymbolVersions(library, versions), ASKER, "") or ()] == lacking
 
 
 # This machine

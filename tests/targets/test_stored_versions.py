@@ -7,7 +7,7 @@ from rosimpact.databuild.surface.stored_versions import StoredVersions
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.surface.compare import State, compare
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
@@ -31,7 +31,7 @@ def versions(tmp_path):
         JAZZY: ("", "void f();"),
     }
     for version, (first, second) in codes.items():
-        state = State({name: surface(name, version, code) for name, code in
+        state = RepositorySurfaces({name: surface(name, version, code) for name, code in
                        (("rclcpp", first), ("rclcpp_action", second))})  # fmt: skip
         for name in state.surfaces:
             packing.add(name, version, (2,), state, version == JAZZY)

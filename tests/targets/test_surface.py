@@ -10,7 +10,7 @@ from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.changes import PARAMETER
-from rosimpact.impact.targets.surface.compare import State, compare, compare_states
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare, compare_states
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -56,7 +56,7 @@ def state(tmp_path_factory):
         folder = tmp_path_factory.mktemp("ws")
         write(folder, *parts)
         with Store(tmp_path_factory.mktemp("cache")) as store:
-            return State(surfaces_of(WorkingTree(folder), store, 1))
+            return RepositorySurfaces(surfaces_of(WorkingTree(folder), store, 1))
 
     return make
 

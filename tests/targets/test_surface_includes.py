@@ -7,8 +7,8 @@ from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
-from rosimpact.impact.targets.providers.includes import Includes, Machine, Table
-from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.includes import compiled, unpack
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
@@ -84,13 +84,15 @@ def machine(tmp_path):
         for package, each in stored.items():
             for version, headers in each.items():
                 one = _surface(package, version, headers, (messages or {}).get(package, {}))
-                packing.add(package, version, (ros,), State({package: one}))
+                packing.add(package, version, (ros,), RepositorySurfaces({package: one}))
         write(tmp_path / "x", packing.packed())
         generators = {"gencpp": "<gencpp>", "rosidl_generator_cpp": "<rosidl_generator_cpp>"}
         owners = {owner: {pattern: "0 0"} for owner, pattern in generators.items()}
-        table = Table(("string",), {**owners, "rope": {"rope/rope.h": "1.0 0"}}, frozenset(("rope",)), frozenset())
+        table = IncludesTable(
+            ("string",), {**owners, "rope": {"rope/rope.h": "1.0 0"}}, frozenset(("rope",)), frozenset()
+        )
         versions = {"gcc": "13", "gencpp": "0.6.5", "rosidl_generator_cpp": "3.1.0", "rope": "1.2", **versions}
-        return Machine(ros, lambda owner, _: versions.get(owner), Includes(table), Surfaces(tmp_path / "x"))
+        return HeadersOfMachine(ros, lambda owner, _: versions.get(owner), Includes(table), Surfaces(tmp_path / "x"))
 
     return made
 

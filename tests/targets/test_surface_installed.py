@@ -10,7 +10,7 @@ from rosimpact.databuild.surface.clones import VersionError
 from rosimpact.databuild.surface.installed import is_installed, surface_at
 from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.targets.surface.compare import State, compare
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.2.0</version><description>d</description>
@@ -149,7 +149,7 @@ def test_so_are_debian_packages_and_links_in_them(tmp_path, packed, name):
 def test_what_is_installed_is_what_the_sources_of_that_version_offer(tmp_path):
     installed = put(tmp_path / "jazzy", {path: text for path, text in INSTALLED.items() if "msg" not in path})
     with Store(tmp_path / "store.sqlite") as store:
-        before = State(surfaces_of(WorkingTree(put(tmp_path / "ws", SOURCES)), store, jobs=1))
+        before = RepositorySurfaces(surfaces_of(WorkingTree(put(tmp_path / "ws", SOURCES)), store, jobs=1))
     surface, after = surface_at("arm", str(installed))
     changes = compare(before.surfaces["arm"], surface, before, after)
     assert [(change.kind, change.what, change.name) for change in changes if change.breaks and change.sure >= 1] == []

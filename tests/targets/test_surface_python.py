@@ -9,7 +9,7 @@ from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.python import UNKNOWN, Names, broken_by, compare, signature
+from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, broken_by, compare, signature
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>
@@ -129,13 +129,13 @@ class Node(Base, Outer.Thing):
     ],
 )  # fmt: skip
 def test_find(surface, files, name, where):
-    found = Names(surface(files)).find(name)
+    found = SurfaceNames(surface(files)).find(name)
     assert (found and ("unknown" if found is UNKNOWN else found.where)) == where
 
 
 def test_generated_and_compiled_modules_are_neither_there_nor_missing(package):
     cmake = f'{CMAKE}rosidl_generate_interfaces(arm "msg/A.msg")'
-    names = Names(surface_of(*package({"CMakeLists.txt": cmake, "msg/A.msg": ""}, "ament_cmake")))
+    names = SurfaceNames(surface_of(*package({"CMakeLists.txt": cmake, "msg/A.msg": ""}, "ament_cmake")))
     assert names.find("arm.msg.A") is UNKNOWN
     assert names.find("arm.srv.A") is None
 
@@ -200,7 +200,7 @@ def test_what_is_new_is_told(surface):
 @pytest.fixture
 def parameters(surface):
     def of(head):
-        found = Names(surface({"a.py": f"def f({head}): pass"})).find("arm.a.f")
+        found = SurfaceNames(surface({"a.py": f"def f({head}): pass"})).find("arm.a.f")
         return found.bound.parameters
 
     return of
@@ -244,4 +244,4 @@ def test_nothing_else_asks_for_these_facts():
 
 def test_modules_that_take_all_names_from_each_other(surface):
     made = surface({"__init__.py": "from .sub import *\n", "sub/__init__.py": "from arm.sub import *\ndef f(): ...\n"})
-    assert set(Names(made).offered) == {"arm.f", "arm.sub.f"}
+    assert set(SurfaceNames(made).offered) == {"arm.f", "arm.sub.f"}

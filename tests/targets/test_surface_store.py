@@ -9,16 +9,16 @@ from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.python.surface import extract as module
-from rosimpact.impact.targets.surface.compare import State, compare
+from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
 from rosimpact.impact.targets.surface.includes import compiled
-from rosimpact.impact.targets.surface.store import History, StoredSurfacesError, Surfaces
+from rosimpact.impact.targets.surface.store import StoredSurfacesError, SurfaceHistory, Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,
     Header,
-    LaunchFile,
-    Module,
-    Program,
+    InstalledLaunchFile,
+    InstalledModule,
+    InstalledProgram,
     PythonSurface,
     Surface,
 )
@@ -43,12 +43,12 @@ def surface(version, code=CODE):
         ("arm",),
         (ExportedTarget("arm::core", "shared", 17),),
         headers=(Header("a.hpp", "include/a.hpp", "a.hpp"),),
-        programs=(Program("drive", "lib/arm", "binary"),),
-        launches=(LaunchFile("launch/a.launch.py", (("x", None), ("y", "1"))),),
+        programs=(InstalledProgram("drive", "lib/arm", "binary"),),
+        launches=(InstalledLaunchFile("launch/a.launch.py", (("x", None), ("y", "1"))),),
         unknown=(("headers", "why"),),
         standard=17,
     )
-    modules = (Module("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
+    modules = (InstalledModule("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
     definitions = (("msg/M", interface(b"int8 a 1\nint8 B=2\n", "msg")),)
     python = PythonSurface("arm", modules, ("arm.msg",))
     headers = (("a.hpp", compiled(header(code.encode()))),)
@@ -59,13 +59,13 @@ def surface(version, code=CODE):
 def packed(*surfaces, approximate=False):
     packing = Packing()
     for one in surfaces:
-        packing.add("arm", one.version, (2,), State({"arm": one}), approximate)
+        packing.add("arm", one.version, (2,), RepositorySurfaces({"arm": one}), approximate)
     return packing.packed()["arm", 2]
 
 
 def stored(*surfaces):
     data, _, includes = packed(*surfaces)
-    return History("arm", data, includes)
+    return SurfaceHistory("arm", data, includes)
 
 
 def test_what_comes_back_is_what_was_packed():
@@ -134,7 +134,7 @@ def test_a_package_of_each_generation_answers_for_its_own(tmp_path):
     packing = Packing()
     for ros, code in ((1, "void one();"), (2, "void two();")):
         one = surface("0.11.0", code)
-        packing.add("arm", "0.11.0", (ros,), State({"arm": one}))
+        packing.add("arm", "0.11.0", (ros,), RepositorySurfaces({"arm": one}))
     write(tmp_path / "x", packing.packed())
     surfaces = Surfaces(tmp_path / "x")
     assert surfaces.generations("arm") == (1, 2)

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import zstandard
 from rosimpact.databuild.surface import unpacked_deb
-from rosimpact.databuild.surface.unpacked_deb import DebError, Member, members
+from rosimpact.databuild.surface.unpacked_deb import DebError, DebFile, members
 from rosimpact.edges.limits import Limits
 
 PACKERS = {
@@ -55,7 +55,7 @@ def deb(data: bytes, packing: str = ".xz") -> bytes:
     return ar(*parts)
 
 
-def of(tmp_path: Path, data: bytes) -> dict[str, Member]:
+def of(tmp_path: Path, data: bytes) -> dict[str, DebFile]:
     (tmp_path / "a.deb").write_bytes(data)
     return members(tmp_path / "a.deb")
 
@@ -76,13 +76,13 @@ FILES = tar(
 @pytest.mark.parametrize("packing", PACKERS)
 def test_what_is_in_it(tmp_path, packing):
     found = of(tmp_path, deb(FILES, packing))
-    a = Member(b"int a;\n" * 200_000, False)
+    a = DebFile(b"int a;\n" * 200_000, False)
     assert found == {
         "usr/include/a.h": a,
         "usr/include/b.h": a,
         "usr/include/hard.h": a,
-        "usr/bin/run": Member(b"", True),
-        LONG: Member(b"long", False),
+        "usr/bin/run": DebFile(b"", True),
+        LONG: DebFile(b"long", False),
     }
 
 

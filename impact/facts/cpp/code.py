@@ -53,7 +53,7 @@ from .flow_grammar import (
 )
 from .lexical import Scan, beginning_lines, scan, standing, text_of
 from .names import without_templates
-from .schema import Class, Declared, Expr, File, Local, Parameter, Place, Use
+from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
 
 _PARSER = Parser(LANGUAGE)
 _TYPE_IDENTIFIER = kind("type_identifier")
@@ -143,7 +143,7 @@ _LIKE_SPACE = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;")
 _DEEPEST = 60
 
 
-class Code:
+class CppCode:
     """One file. data: its bytes."""
 
     def __init__(self, data: bytes):
@@ -199,7 +199,7 @@ class Code:
     # -- declarations --------------------------------------------------------------------------------------------------
 
     @cached_property
-    def file(self) -> File:
+    def file(self) -> FileDeclarations:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
 
@@ -273,7 +273,7 @@ class Code:
         """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
         return self.mentions(word) and _member_pattern(word).search(self._data) is not None
 
-    def uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[Use]:
+    def uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[CppUse]:
         """The places where these words are used; of `operator+=` and its like, where the operator is. wanted: whether a
         word may be of interest at an offset of the text, asked before the file is parsed."""
         for word in words:
@@ -292,7 +292,7 @@ class Code:
                     if use is not None:
                         yield use
 
-    def _assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[Use]:
+    def _assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[CppUse]:
         sign = word.removeprefix("operator")
         at = self.text.find(sign)
         while at >= 0:
@@ -302,10 +302,10 @@ class Code:
                 if path[-1].start_byte == at and node.kind_id == _ASSIGNMENT:
                     left = node.child_by_field_name("left")
                     if left is not None:
-                        yield Use(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
+                        yield CppUse(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
             at = self.text.find(sign, at + len(sign))
 
-    def _use(self, word: str, at: int, path: list[Node]) -> Use | None:
+    def _use(self, word: str, at: int, path: list[Node]) -> CppUse | None:
         level = len(path) - 1
         node = path[level]
         template = None
@@ -336,7 +336,7 @@ class Code:
         outer = path[:level]
         form = "scoped" if "::" in written else "bare"
         if not last:
-            return Use(word, at, form, written, self._place(path), template=template, last=False)
+            return CppUse(word, at, form, written, self._place(path), template=template, last=False)
         if number == FIELD:
             object_ = parent.child_by_field_name("argument")
             if object_ is None or object_ == node:
@@ -346,11 +346,11 @@ class Code:
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
             if "::" in written:
                 return None
-            return Use(word, at, "member", written, self._place(path), self._expression(object_, outer), arrow,
+            return CppUse(word, at, "member", written, self._place(path), self._expression(object_, outer), arrow,
                        call, template=template)  # fmt: skip
         if number == _INITIALIZER:
             call = self._arguments(parent.named_children[-1], outer)
-            return Use(word, at, "initializer", written, self._place(path), call=call, template=template)
+            return CppUse(word, at, "initializer", written, self._place(path), call=call, template=template)
         if number == CALL:
             return self._named(word, at, form, written, template, self._called(path, level), False, path, outer)
         if self._is_declared(node, parent, path, level):
@@ -358,9 +358,9 @@ class Code:
         made, call = self._made(node, parent, path, level)
         return self._named(word, at, form, written, template, call, made, path, outer)
 
-    def _named(self, word, at, form, written, template, call, made, path, outer) -> Use:
+    def _named(self, word, at, form, written, template, call, made, path, outer) -> CppUse:
         local = self._local(word, at, outer) if form == "bare" else None
-        return Use(word, at, form, written, self._place(path), None, False, call, made, template, local)
+        return CppUse(word, at, form, written, self._place(path), None, False, call, made, template, local)
 
     def _called(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
         """The arguments where the node at a level is what a call calls."""
@@ -442,7 +442,7 @@ class Code:
     def _in_function(self, path: Sequence[Node]) -> bool:
         return any(node.kind_id in (COMPOUND, LAMBDA, _INITIALIZERS) for node in path)
 
-    def _place(self, path: Sequence[Node]) -> Place:
+    def _place(self, path: Sequence[Node]) -> CodePlace:
         scope: list[str] = []
         owner, function = "", False
         opened: list[str] = []
@@ -471,7 +471,7 @@ class Code:
                         opened.append(name)
                     elif how == "used" and at < path[-1].start_byte:
                         used.append(name)
-        return Place("::".join(scope), owner, function, tuple(opened), tuple(used))
+        return CodePlace("::".join(scope), owner, function, tuple(opened), tuple(used))
 
     # -- what names mean inside functions ------------------------------------------------------------------------------
 
@@ -826,10 +826,10 @@ def _errors(root: Node) -> int:
 class _Declarations:
     """Reads what a file declares outside of functions."""
 
-    def __init__(self, code: Code):
+    def __init__(self, code: CppCode):
         self.code = code
-        self.classes: list[Class] = []
-        self.names: list[Declared] = []
+        self.classes: list[CppClass] = []
+        self.names: list[Declaration] = []
         self.using: list[tuple[str, str]] = []
         self.opened: list[tuple[str, str]] = []
         self.spaces: list[tuple[str, str, str]] = []
@@ -837,10 +837,10 @@ class _Declarations:
         self.announced: list[str] = []
         self.macros: list[str] = []
 
-    def read(self, root: Node) -> File:
+    def read(self, root: Node) -> FileDeclarations:
         with suppress(RecursionError):  # what nobody writes by hand is read as far as it goes
             self._among(root.named_children, "", None, ())
-        return File(
+        return FileDeclarations(
             tuple(self.classes), tuple(self.names), tuple(self.using), tuple(self.opened), tuple(self.spaces),
             tuple(self.added), tuple(self.announced), tuple(self.macros),
         )  # fmt: skip
@@ -886,7 +886,7 @@ class _Declarations:
             elif number in (ERROR, _DECLARATIONS):
                 self._among(node.named_children, scope, members, template)
 
-    def _add(self, members: dict[str, list[Declared]] | None, one: Declared) -> None:
+    def _add(self, members: dict[str, list[Declaration]] | None, one: Declaration) -> None:
         if members is None:
             self.names.append(one)
         else:
@@ -928,7 +928,7 @@ class _Declarations:
                 if re.match(r"[^{;]*=\s*delete\b", behind):
                     inner.add("deleted")
                 self._add(members if not outer else None,
-                          Declared("function", last, around, name.start_byte, result, self._parameters(function),
+                          Declaration("function", last, around, name.start_byte, result, self._parameters(function),
                                    frozenset(inner), template))  # fmt: skip
             else:
                 value = None
@@ -936,16 +936,17 @@ class _Declarations:
                     given = declarator.child_by_field_name("value")
                     value = code._value(given, (), 0)
                 self._add(members if not outer else None,
-                          Declared("variable", last, around, name.start_byte, type_ + marks + ("[]" if array else ""),
+                          Declaration("variable", last, around, name.start_byte,
+                                   type_ + marks + ("[]" if array else ""),
                                    (), frozenset(traits), template, value))  # fmt: skip
 
-    def _parameters(self, function: Node) -> tuple[Parameter, ...]:
+    def _parameters(self, function: Node) -> tuple[WrittenParameter, ...]:
         code = self.code
         listed = function.child_by_field_name("parameters")
         found = []
         for each in listed_in(listed) if listed is not None else ():
             if each.kind_id not in _PARAMETERS:
-                found.append(Parameter("..." if each.type == "variadic_parameter" else code._of(each)))
+                found.append(WrittenParameter("..." if each.type == "variadic_parameter" else code._of(each)))
                 continue
             declarator = each.child_by_field_name("declarator")
             name, *_ = code._declarator(declarator)
@@ -956,7 +957,7 @@ class _Declarations:
             if name is not None and name.kind_id == IDENTIFIER:
                 start = name.start_byte - each.start_byte
                 text = text[:start] + text[start + name.end_byte - name.start_byte :]
-            found.append(Parameter(" ".join(text.split()), code._of(name) if name is not None else "",
+            found.append(WrittenParameter(" ".join(text.split()), code._of(name) if name is not None else "",
                                    code._of(default) if default is not None else None))  # fmt: skip
         return tuple(found) if [p.type for p in found] != ["void"] else ()
 
@@ -980,16 +981,16 @@ class _Declarations:
         for child in node.named_children:
             if child.kind_id == _BASES:
                 bases = [code._of(one) for one in child.named_children if one.kind_id in _TYPES]
-        inside: dict[str, list[Declared]] = {}
+        inside: dict[str, list[Declaration]] = {}
         place = len(self.classes)
         self._among(body.named_children, full, inside, ())
         open_ = any(child.kind_id == ERROR or child.is_missing for child in body.children) or any(
             each.type.isupper() for those in inside.values() for each in those
         )
-        one = Class(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
+        one = CppClass(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
         self.classes.insert(place, one)
         if members is not None:
-            self._add(members, Declared("type", without_templates(written), scope, name.start_byte))
+            self._add(members, Declaration("type", without_templates(written), scope, name.start_byte))
 
     def _enum(self, node: Node, scope: str, members) -> None:
         code = self.code
@@ -1000,11 +1001,11 @@ class _Declarations:
         if name is not None:
             last = without_templates(code._of(name))
             full = _joined(scope, last)
-            self._add(members, Declared("type", last, scope, name.start_byte))
+            self._add(members, Declaration("type", last, scope, name.start_byte))
         for each in body.named_children if body is not None else ():
             inner = each.child_by_field_name("name")
             if inner is not None:
-                one = Declared("enumerator", code._of(inner), full if scoped else scope, inner.start_byte, full)
+                one = Declaration("enumerator", code._of(inner), full if scoped else scope, inner.start_byte, full)
                 if scoped:
                     self.names.append(one)
                 else:
@@ -1015,7 +1016,7 @@ class _Declarations:
         if node.kind_id == _ALIAS:
             name, type_ = node.child_by_field_name("name"), node.child_by_field_name("type")
             if name is not None and type_ is not None:
-                self._add(members, Declared("alias", code._of(name), scope, name.start_byte, code._of(type_),
+                self._add(members, Declaration("alias", code._of(name), scope, name.start_byte, code._of(type_),
                                             template=template))  # fmt: skip
             return
         type_ = node.child_by_field_name("type")
@@ -1024,7 +1025,7 @@ class _Declarations:
         for declarator in node.children_by_field_name("declarator"):
             name, marks, function, array = code._declarator(declarator)
             if name is not None and function is None:
-                self._add(members, Declared("alias", code._of(name), scope, name.start_byte,
+                self._add(members, Declaration("alias", code._of(name), scope, name.start_byte,
                                             code._type(node) + marks + ("[]" if array else "")))  # fmt: skip
 
     def _using(self, node: Node, scope: str) -> None:

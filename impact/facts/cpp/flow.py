@@ -14,7 +14,7 @@ from bisect import bisect_right
 
 from tree_sitter import Node, Parser
 
-from ..flow import Alias, Assignment, Class, Expr, FlowFile, Member
+from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
 from . import EXPORTING, beginning_lines, exports_of, scan
 from .flow_clean import Cleaned, cleaned, cleaned_further
@@ -40,7 +40,7 @@ from .flow_grammar import (
     kind,
     listed_in,
 )
-from .flow_statements import FIELD_INITIALIZERS, PREPROC, Statements
+from .flow_statements import FIELD_INITIALIZERS, PREPROC, CppStatements
 from .flow_values import READ, bare, flat
 
 PARSER = Parser(LANGUAGE)
@@ -103,14 +103,14 @@ def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
     return found
 
 
-class _File(Statements):
+class _File(CppStatements):
     """The reader of a whole file."""
 
     def __init__(self, source) -> None:
         super().__init__(source)
         self.aliases: list[Alias] = []
-        self.classes: list[Class] = []
-        self.constants: list[Member] = []
+        self.classes: list[FlowClass] = []
+        self.constants: list[DataMember] = []
         self.problems: list[Problem] = []
         self.namespaces: set[str] = set()
         self.misread = False
@@ -235,13 +235,13 @@ class _File(Statements):
             return
         said, written = children[1], children[2]
         text = flat(self.text[written.start_byte : written.end_byte])
-        value: Expr | None = None
+        value: FlowExpr | None = None
         if text[:1] == '"' and text[-1:] == '"' and len(text) > 1 and '"' not in text[1:-1]:
-            value = Expr("text", text[1:-1])
+            value = FlowExpr("text", text[1:-1])
         elif text in ("true", "false") or (text.strip("()") and _is_number(text.strip("()"))):
-            value = Expr("number", text.strip("()"))
+            value = FlowExpr("number", text.strip("()"))
         if value is not None:
-            self.constants.append(Member(self.said(said), "", self.line(node), value))
+            self.constants.append(DataMember(self.said(said), "", self.line(node), value))
 
     # Variables and members
 
@@ -274,7 +274,7 @@ class _File(Statements):
             return
         variable = bare(self.said(said))
         target = f"this.{variable}" if owner else joined(name, variable)
-        value: Expr | None = None
+        value: FlowExpr | None = None
         children = node.children
         given: Node | None = None
         if child.kind_id == INIT_DECLARATOR:
@@ -294,10 +294,10 @@ class _File(Statements):
                 if len(inner) == 1:
                     value = self.value(inner[0], base, READ, target)
                 else:
-                    value = Expr("make", type_, self.arguments(given, base, bare(type_)))
+                    value = FlowExpr("make", type_, self.arguments(given, base, bare(type_)))
             else:
                 value = self.value(given, base, READ, target)
-        member = Member(variable if owner else target, type_ + marks, self.line(said), value)
+        member = DataMember(variable if owner else target, type_ + marks, self.line(said), value)
         (self.members if owner else self.constants).append(member)
 
     def declares_function(self, node: Node) -> bool:
@@ -325,7 +325,7 @@ class _File(Statements):
 
     # Classes
 
-    members: list[Member]
+    members: list[DataMember]
     methods: list[str]
 
     def class_(self, node: Node, name: str, owner: str, conditions) -> None:
@@ -350,7 +350,7 @@ class _File(Statements):
         if kept[0] is not None and kept[1] is not None:
             self.members, self.methods = kept[0], kept[1]
         self.classes.append(
-            Class(
+            FlowClass(
                 inner,
                 tuple(bases),
                 tuple(members),
@@ -464,7 +464,7 @@ class _File(Statements):
             if len(inner) == 1:
                 value = self.value(inner[0], guard, ("pass", target, 0), target)
             else:
-                value = Expr("make", "", self.arguments(given, guard, target) if inner else ())
+                value = FlowExpr("make", "", self.arguments(given, guard, target) if inner else ())
             self.assignments.append(Assignment(target, value, self.line(child), guard))
 
     def statement_outside(self, node: Node, name: str, owner: str, conditions) -> None:

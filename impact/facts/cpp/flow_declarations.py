@@ -6,7 +6,7 @@ from bisect import bisect_right
 
 from tree_sitter import Node
 
-from ..flow import Assignment, Call, Expr, Function, Parameter
+from ..flow import Assignment, FlowCall, FlowExpr, FlowFunction, FlowParameter
 from .flow_grammar import (
     ABSTRACT_FUNCTION,
     ARGUMENTS,
@@ -37,10 +37,10 @@ from .flow_grammar import (
     grammatical,
     listed_in,
 )
-from .flow_values import READ, VALUES, Position, Values, bare, flat
+from .flow_values import READ, VALUES, FunctionReader, Position, bare, flat
 
 
-class Declarations(Values):
+class Declarations(FunctionReader):
     """The reader of declarations inside functions."""
 
     def written_type(self, children: list[Node]) -> str:
@@ -80,11 +80,11 @@ class Declarations(Values):
                 return None, marks
         return None, marks
 
-    def declaration(self, node: Node, guard: int, position: Position, target: str) -> Expr:
+    def declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """Local variables."""
         children = node.children
         kind_ = ""
-        value = Expr("other")
+        value = FlowExpr("other")
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
@@ -111,7 +111,7 @@ class Declarations(Values):
                 variable = self.text[name.start_byte : name.end_byte]
                 self.known.add(variable)
                 self.assignments.append(
-                    Assignment(variable, Expr("make", kind_ + marks), self.line(name), guard, kind_ + marks)
+                    Assignment(variable, FlowExpr("make", kind_ + marks), self.line(name), guard, kind_ + marks)
                 )
             elif number in DECLARED_TYPES:
                 self.local_type(child)
@@ -126,7 +126,7 @@ class Declarations(Values):
     def local_name(self, node: Node) -> None:
         """Another name for something inside a function; the same."""
 
-    def initialised(self, node: Node, guard: int, kind_: str) -> Expr:
+    def initialised(self, node: Node, guard: int, kind_: str) -> FlowExpr:
         children = node.children
         if len(children) == 3 and children[1].kind_id == EQUALS:
             return self.kept(children[0], children[2], guard, kind_)
@@ -144,12 +144,12 @@ class Declarations(Values):
             inner = listed_in(given)
             if len(inner) == 1:
                 return self.kept(children[0], inner[0], guard, kind_)
-        value = Expr("make", kind_, self.arguments(given, guard, bare(kind_)))
+        value = FlowExpr("make", kind_, self.arguments(given, guard, bare(kind_)))
         self.known.add(variable)
         self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
         return value
 
-    def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> Expr:
+    def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
         """`T x = given`."""
         if declarator.kind_id == IDENTIFIER:
             name, marks = declarator, ""
@@ -164,7 +164,7 @@ class Declarations(Values):
             for index, child in enumerate(variables):
                 variable = self.text[child.start_byte : child.end_byte]
                 self.known.add(variable)
-                part = Expr("index", "", (value, Expr("number", str(index))))
+                part = FlowExpr("index", "", (value, FlowExpr("number", str(index))))
                 self.assignments.append(Assignment(variable, part, line, guard, kind_ + marks))
             return value
         variable = self.text[name.start_byte : name.end_byte]
@@ -183,7 +183,7 @@ class Declarations(Values):
         types = listed_in(listed)
         if not types or kind_ == "void":
             return
-        parts: list[Expr] = []
+        parts: list[FlowExpr] = []
         callee = bare(kind_)
         for child in types:
             part = self.taken_for_parameter(child, guard, ("pass", callee, len(parts)))
@@ -193,7 +193,7 @@ class Declarations(Values):
         variable = self.text[name.start_byte : name.end_byte]
         self.known.add(variable)
         self.assignments.append(
-            Assignment(variable, Expr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
+            Assignment(variable, FlowExpr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
         )
 
     def called_after(self, node: Node, guard: int, asked: str) -> bool:
@@ -207,16 +207,16 @@ class Declarations(Values):
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
         callee = bare(self.text[name.start_byte : name.end_byte])
-        parts: list[Expr] = []
+        parts: list[FlowExpr] = []
         for child in listed_in(listed):
             part = self.taken_for_parameter(child, inner, ("pass", callee, len(parts)))
             if part is None:
                 return True
             parts.append(part)
-        self.calls.append(Call(callee, tuple(parts), line, column, inner))
+        self.calls.append(FlowCall(callee, tuple(parts), line, column, inner))
         return True
 
-    def taken_for_parameter(self, node: Node, guard: int, position: Position) -> Expr | None:
+    def taken_for_parameter(self, node: Node, guard: int, position: Position) -> FlowExpr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""
         children = grammatical(node)
         if node.kind_id != PARAMETER or not children or children[0].kind_id not in TYPES:
@@ -225,25 +225,25 @@ class Declarations(Values):
         if len(children) == 1:
             if name in self.known:
                 self.touch(name, node, guard, position)
-            return Expr("name", name)
+            return FlowExpr("name", name)
         if len(children) == 2 and children[1].kind_id == ABSTRACT_FUNCTION:
             listed = next((child for child in children[1].children if child.kind_id == PARAMETERS), None)
-            parts: list[Expr] = []
+            parts: list[FlowExpr] = []
             for child in listed_in(listed) if listed is not None else ():
                 part = self.taken_for_parameter(child, guard, ("pass", name, len(parts)))
                 if part is None:
                     return None
                 parts.append(part)
             line, column = self.place(children[0].start_byte)
-            self.calls.append(Call(name, tuple(parts), line, column, guard))
-            return Expr("call", name, tuple(parts))
+            self.calls.append(FlowCall(name, tuple(parts), line, column, guard))
+            return FlowExpr("call", name, tuple(parts))
         return None
 
     # Functions
 
-    def parameters(self, listed: Node | None, guard: int = -1) -> tuple[Parameter, ...]:
+    def parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
         """The parameters of a function; their names are known from here on."""
-        result: list[Parameter] = []
+        result: list[FlowParameter] = []
         if listed is None:
             return ()
         for child in listed.children:
@@ -251,7 +251,7 @@ class Declarations(Values):
             if number not in (PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER):
                 continue
             children = child.children
-            default: Expr | None = None
+            default: FlowExpr | None = None
             end = child.end_byte
             name: Node | None = None
             typed = False
@@ -271,21 +271,21 @@ class Declarations(Values):
             if name is None:
                 if child.child_count == 1 and self.text[start:end] == "void":
                     continue
-                result.append(Parameter("", flat(self.text[start:end]), default))
+                result.append(FlowParameter("", flat(self.text[start:end]), default))
                 continue
             said = self.text[name.start_byte : name.end_byte]
             self.known.add(said)
             written = self.text[start : name.start_byte] + " " + self.text[name.end_byte : end]
-            result.append(Parameter(said, flat(written), default))
+            result.append(FlowParameter(said, flat(written), default))
         return tuple(result)
 
-    def lambda_(self, node: Node, guard: int, position: Position, target: str) -> Expr:
+    def lambda_(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
         line, column = self.place(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
         if self.name == "" and self.owner:
             name = f"{self.owner}::{name}"
-        inits: list[tuple[str, Expr]] = []
+        inits: list[tuple[str, FlowExpr]] = []
         body: Node | None = None
         listed: Node | None = None
         returns = ""
@@ -316,14 +316,14 @@ class Declarations(Values):
             self.run(body)
         self.close(parameters, line, bisect_right(self.starts, max(0, node.end_byte - 1)), returns)
         self.restore(state)
-        return Expr("lambda", name)
+        return FlowExpr("lambda", name)
 
     def close(
-        self, parameters: tuple[Parameter, ...], line: int, end: int, returns: str = "", virtual: bool = False
+        self, parameters: tuple[FlowParameter, ...], line: int, end: int, returns: str = "", virtual: bool = False
     ) -> None:
         """Notes the function it is in."""
         self.functions.append(
-            Function(
+            FlowFunction(
                 self.name,
                 self.owner,
                 parameters,

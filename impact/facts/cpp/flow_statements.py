@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tree_sitter import Node
 
-from ..flow import Assignment, Expr
+from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
 from .flow_grammar import (
@@ -35,7 +35,7 @@ from .flow_grammar import (
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
-class Condition(NamedTuple):
+class FlowCondition(NamedTuple):
     """What must hold for what follows a statement to run. code: the text in C++, where that is another."""
 
     kind: str
@@ -47,7 +47,7 @@ class Condition(NamedTuple):
 STAYS = 0
 JUMPS = 1
 BREAKS = 2
-Leaving = int | tuple[Condition, ...]
+Leaving = int | tuple[FlowCondition, ...]
 
 ELSE = kind("else_clause")
 CASE = kind("case_statement")
@@ -75,7 +75,7 @@ MOST_CONDITIONS = 500
 MOST_VALUES = 64
 
 
-def negated(conditions: tuple[Condition, ...]) -> str | None:
+def negated(conditions: tuple[FlowCondition, ...]) -> str | None:
     """The text of when not all of some conditions hold; None when that has no words."""
     pieces: list[str] = []
     for condition in conditions:
@@ -102,7 +102,7 @@ def grouped(text: str) -> str:
     return text
 
 
-class Statements(Declarations):
+class CppStatements(Declarations):
     """The reader of statements."""
 
     def run(self, body: Node, guard: int = -1) -> None:
@@ -138,7 +138,7 @@ class Statements(Declarations):
         """Statements one after the other."""
         base = guard
         ended = STAYS
-        conditions: list[Condition] = []
+        conditions: list[FlowCondition] = []
         headed: Node | None = None
         jumped: Node | None = None
         regions = self.regions
@@ -188,7 +188,7 @@ class Statements(Declarations):
         inner = regions.between(around, node.start_byte)
         if not inner:
             return leaving
-        return (Condition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS
+        return (FlowCondition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS
 
     def heads(self, node: Node, children: list[Node]) -> bool:
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
@@ -219,7 +219,7 @@ class Statements(Declarations):
 
     def if_(self, node: Node, guard: int) -> Leaving:
         """An if with its chain of else-ifs, which is walked along since it is a deep tree."""
-        branches: list[tuple[Condition, Leaving]] = []
+        branches: list[tuple[FlowCondition, Leaving]] = []
         last: Leaving = STAYS
         while True:
             asked: Node | None = None
@@ -238,7 +238,7 @@ class Statements(Declarations):
             line = self.line(node)
             text = self.condition(asked, guard)
             leaving = self.statement(then, self.guard("if", text, line, guard)) if then is not None else STAYS
-            branches.append((Condition("unless", text, line), leaving))
+            branches.append((FlowCondition("unless", text, line), leaving))
             if other is None:
                 break
             guard = self.guard("unless", text, line, guard)
@@ -256,7 +256,7 @@ class Statements(Declarations):
             last = self.either(asked_, leaving, last)
         return last
 
-    def either(self, asked: Condition, yes: Leaving, no: Leaving) -> Leaving:
+    def either(self, asked: FlowCondition, yes: Leaving, no: Leaving) -> Leaving:
         """How control leaves an if, from how it leaves its branches. asked: that its condition does not hold."""
         yes_ends = yes in (JUMPS, BREAKS)
         no_ends = no in (JUMPS, BREAKS)
@@ -265,18 +265,18 @@ class Statements(Declarations):
         if yes_ends:
             return (asked, *no) if isinstance(no, tuple) and len(no) < MOST_CONDITIONS else (asked,)
         if no_ends:
-            holds = Condition("if", asked.text, asked.line)
+            holds = FlowCondition("if", asked.text, asked.line)
             return (holds, *yes) if isinstance(yes, tuple) and len(yes) < MOST_CONDITIONS else (holds,)
         if yes == STAYS and isinstance(no, tuple) and len(no) == 1 and no[0].kind == "if":
             # Branches that go on, before an else that does not.
             text = f"{asked.text} || {no[0].text}"
-            return (Condition("if", text, asked.line),) if len(text) < LONGEST_COMPOSED else STAYS
-        result: list[Condition] = []
+            return (FlowCondition("if", text, asked.line),) if len(text) < LONGEST_COMPOSED else STAYS
+        result: list[FlowCondition] = []
         for head, leaving in ((grouped(asked.text), yes), (f"!({asked.text})", no)):
             if isinstance(leaving, tuple):
                 tail = negated(leaving)
                 if tail is not None and len(head) + len(tail) < LONGEST_COMPOSED:
-                    result.append(Condition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
+                    result.append(FlowCondition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
         return tuple(result) or STAYS
 
     # Loops
@@ -343,7 +343,7 @@ class Statements(Declarations):
                 if part.is_named:
                     variable = self.text[part.start_byte : part.end_byte]
                     self.known.add(variable)
-                    value = Expr("index", "", (container, Expr("other")))
+                    value = FlowExpr("index", "", (container, FlowExpr("other")))
                     self.assignments.append(Assignment(variable, value, line, inner, type_ + marks))
         self.statement(body, inner)
         return STAYS
@@ -459,16 +459,16 @@ class Statements(Declarations):
                 return JUMPS
             values = [str(value) for value in reversed(staying)]
             code = " || ".join(f"{subject} == {value}" for value in values)
-            return (Condition("case", f"{subject} == {' or '.join(values)}", line, code),)
+            return (FlowCondition("case", f"{subject} == {' or '.join(values)}", line, code),)
         values = [str(value) for value in reversed(jumping)]
         code = " && ".join(f"{subject} != {value}" for value in values)
-        return (Condition("case", f"{subject} other than {', '.join(values)}", line, code),)
+        return (FlowCondition("case", f"{subject} other than {', '.join(values)}", line, code),)
 
     # Exceptions, jumps
 
     def try_(self, node: Node, guard: int) -> Leaving:
         leaving: Leaving = STAYS
-        caught: list[tuple[Condition, Leaving]] = []
+        caught: list[tuple[FlowCondition, Leaving]] = []
         for child in node.children:
             number = child.kind_id
             if number == CATCH:
@@ -479,7 +479,7 @@ class Statements(Declarations):
                 body = next((part for part in child.children if part.kind_id == COMPOUND), None)
                 inner = self.guard("catch", text, line, guard)
                 left = self.statement(body, inner) if body is not None else STAYS
-                caught.append((Condition("catch", text, line), left))
+                caught.append((FlowCondition("catch", text, line), left))
             elif number == COMPOUND:
                 leaving = self.statement(child, guard)
             elif number == FIELD_INITIALIZERS:
@@ -491,7 +491,7 @@ class Statements(Declarations):
             return (going_on[0],) if len(going_on) == 1 else STAYS
         conditions = leaving if isinstance(leaving, tuple) else ()
         conditions += tuple(
-            Condition("unless", f"catch ({asked.text})", asked.line)
+            FlowCondition("unless", f"catch ({asked.text})", asked.line)
             for asked, left in caught
             if left in (JUMPS, BREAKS)
         )
@@ -527,7 +527,7 @@ class Statements(Declarations):
                     return JUMPS
                 if value.text in ASSERTS and value.parts:
                     arguments = child.children[-1].children
-                    return (Condition("if", self.outer_text(arguments[1]), self.line(node)),)
+                    return (FlowCondition("if", self.outer_text(arguments[1]), self.line(node)),)
         elif number == THROW:
             return JUMPS
         return STAYS
@@ -599,12 +599,12 @@ class Statements(Declarations):
         gone = [left in (JUMPS, BREAKS) for _, left in ends]
         if all(gone) and not ends[-1][0]:
             return ends[0][1]
-        conditions: list[Condition] = []
+        conditions: list[FlowCondition] = []
         for (asked, _), jumps in zip(ends, gone, strict=True):
             if jumps and asked:
-                conditions.append(Condition("cpp", f"!({asked})", line))
+                conditions.append(FlowCondition("cpp", f"!({asked})", line))
             elif jumps and len(ends) == 2 and not gone[0]:
-                conditions.append(Condition("cpp", ends[0][0], line))
+                conditions.append(FlowCondition("cpp", ends[0][0], line))
             elif not jumps:
                 break
         return tuple(conditions) or STAYS
@@ -633,34 +633,34 @@ RIGHT_ROUND = kind(")", False)
 THROW = kind("throw_statement")
 PREPROC = frozenset((PREPROC_IF, PREPROC_IFDEF))
 STATEMENTS = {
-    COMPOUND: Statements.block,
-    EXPRESSION_STATEMENT: Statements.expression,
-    IF: Statements.if_,
-    kind("while_statement"): Statements.while_,
-    kind("for_statement"): Statements.for_,
-    kind("for_range_loop"): Statements.range_for,
-    kind("do_statement"): Statements.do,
-    kind("switch_statement"): Statements.switch,
-    kind("try_statement"): Statements.try_,
-    kind("return_statement"): Statements.returned,
-    kind("co_return_statement"): Statements.returned,
-    kind("continue_statement"): Statements.jump,
-    kind("break_statement"): Statements.broken,
-    kind("goto_statement"): Statements.jump,
-    THROW: Statements.thrown_,
-    LABELED: Statements.labeled,
-    kind("function_definition"): Statements.macro_block,
-    PREPROC_IF: Statements.preprocessor,
-    PREPROC_IFDEF: Statements.preprocessor,
-    ERROR: Statements.unknown,
-    COMMENT: Statements.nothing,
+    COMPOUND: CppStatements.block,
+    EXPRESSION_STATEMENT: CppStatements.expression,
+    IF: CppStatements.if_,
+    kind("while_statement"): CppStatements.while_,
+    kind("for_statement"): CppStatements.for_,
+    kind("for_range_loop"): CppStatements.range_for,
+    kind("do_statement"): CppStatements.do,
+    kind("switch_statement"): CppStatements.switch,
+    kind("try_statement"): CppStatements.try_,
+    kind("return_statement"): CppStatements.returned,
+    kind("co_return_statement"): CppStatements.returned,
+    kind("continue_statement"): CppStatements.jump,
+    kind("break_statement"): CppStatements.broken,
+    kind("goto_statement"): CppStatements.jump,
+    THROW: CppStatements.thrown_,
+    LABELED: CppStatements.labeled,
+    kind("function_definition"): CppStatements.macro_block,
+    PREPROC_IF: CppStatements.preprocessor,
+    PREPROC_IFDEF: CppStatements.preprocessor,
+    ERROR: CppStatements.unknown,
+    COMMENT: CppStatements.nothing,
     **{
-        kind(name): Statements.named
+        kind(name): CppStatements.named
         for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")
     },
-    **{number: Statements.local for number in DECLARED_TYPES},
+    **{number: CppStatements.local for number in DECLARED_TYPES},
     **{
-        kind(name): Statements.nothing
+        kind(name): CppStatements.nothing
         for name in (
             "preproc_def", "preproc_function_def", "preproc_call", "preproc_include", "static_assert_declaration",
             "access_specifier",

@@ -17,7 +17,7 @@ from typing import Any
 
 from tree_sitter import Node
 
-from ..flow import Access, Assignment, Call, Expr, Function, Guard
+from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
 from .flow_grammar import (
     ARGUMENTS,
@@ -68,7 +68,7 @@ RETURN = "return"  # in place of a target: no path is called so
 LONGEST_OTHER = 120
 LONGEST_CONDITION = 4000
 DEEPEST = 24
-NOTHING = Expr("other")
+NOTHING = FlowExpr("other")
 
 _PLAIN = re.compile(r"(this->)?([A-Za-z_]\w*)(?:(?:\.|->)[A-Za-z_]\w*)*")
 _ASIDE = re.compile(r'//[^\n]*|/\*.*?\*/|("(?:[^"\\]|\\.)*")', re.DOTALL)
@@ -104,27 +104,27 @@ def bare(name: str) -> str:
     return "".join(name.split()) if "operator" not in name else " ".join(name.split())
 
 
-class Values:
+class FunctionReader:
     """The reader of one file's functions, and the function that it is in."""
 
     def __init__(self, cleaned: Cleaned) -> None:
         self.text = cleaned.text
         self.starts = cleaned.starts
         self.regions = Regions(cleaned.regions) if cleaned.regions else None
-        self.functions: list[Function] = []
+        self.functions: list[FlowFunction] = []
         self.nesting = 0
         self.name = ""
         self.owner = ""
         self.begin(set())
         # What the receiver of the call that is read is, where it is a call too or is made there.
-        self.received: Expr | None = None
+        self.received: FlowExpr | None = None
         # Parameters of the template that is read.
         self.types: tuple[str, ...] = ()
 
     def begin(self, known: set[str]) -> None:
         """Starts an empty function that knows some variables."""
         self.guards: list[Guard] = []
-        self.calls: list[Call] = []
+        self.calls: list[FlowCall] = []
         self.assignments: list[Assignment] = []
         self.accesses: list[Access] = []
         self.known = known
@@ -159,17 +159,17 @@ class Values:
 
     # Expressions
 
-    def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> Expr:
+    def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> FlowExpr:
         """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,
         None where nobody asks what it says."""
         return VALUES[node.kind_id](self, node, guard, position, target)
 
-    def other(self, node: Node) -> Expr:
+    def other(self, node: Node) -> FlowExpr:
         start = node.start_byte
         end = min(node.end_byte, start + 4 * LONGEST_OTHER)
-        return Expr("other", flat(self.text[start:end])[:LONGEST_OTHER])
+        return FlowExpr("other", flat(self.text[start:end])[:LONGEST_OTHER])
 
-    def anything(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def anything(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
@@ -178,29 +178,29 @@ class Values:
                 self.anything(child, guard, position, None)
         return NOTHING if target is None else self.other(node)
 
-    def skipped(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def skipped(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.other(node)
 
-    def identifier(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         start = node.start_byte
         name = self.text[start : node.end_byte]
         if name in self.known:
             self.accesses.append(
                 Access(name, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
             )
-        return Expr("name", name)
+        return FlowExpr("name", name)
 
-    def number(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
-        return Expr("number", self.text[node.start_byte : node.end_byte])
+    def number(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+        return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
-    def this(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
-        return Expr("name", "this")
+    def this(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+        return FlowExpr("name", "this")
 
-    def string(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
-            return Expr("text", text[1:-1])
-        return Expr("text", self.literal(node))
+            return FlowExpr("text", text[1:-1])
+        return FlowExpr("text", self.literal(node))
 
     def literal(self, node: Node) -> str:
         """The value of a string literal."""
@@ -213,25 +213,25 @@ class Values:
             text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
         return text
 
-    def strings(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
-        parts: list[Expr] = []
+    def strings(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+        parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
             if number in (STRING, RAW_STRING):
                 text = self.literal(child)
                 if parts and parts[-1].kind == "text":
                     text = parts.pop().text + text
-                parts.append(Expr("text", text))
+                parts.append(FlowExpr("text", text))
             elif number == IDENTIFIER:
-                parts.append(Expr("name", self.text[child.start_byte : child.end_byte]))
+                parts.append(FlowExpr("name", self.text[child.start_byte : child.end_byte]))
         if len(parts) == 1:
             return parts[0]
-        return Expr("join", "+", tuple(parts))
+        return FlowExpr("join", "+", tuple(parts))
 
-    def qualified(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
-        return Expr("name", bare(self.text[node.start_byte : node.end_byte]))
+    def qualified(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+        return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
 
-    def field(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def field(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         start = node.start_byte
         plain = _PLAIN.fullmatch(self.text, start, node.end_byte)
         if plain is not None:
@@ -240,11 +240,11 @@ class Values:
                 self.accesses.append(
                     Access(path, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
                 )
-            return Expr("name", path)
+            return FlowExpr("name", path)
         path, local = self.path(node, guard)
         if local:
             self.touch(path, node, guard, position)
-        return Expr("name", path)
+        return FlowExpr("name", path)
 
     def touch(self, path: str, node: Node, guard: int, position: Position) -> None:
         self.accesses.append(
@@ -361,7 +361,7 @@ class Values:
             node = node.children[-1]
         return bare(self.text[node.start_byte : node.end_byte])
 
-    def call(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def call(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
@@ -376,7 +376,7 @@ class Values:
         method = ""
         local = False
         receiver = ""
-        received: Expr | None = None
+        received: FlowExpr | None = None
         if number == IDENTIFIER:
             callee = text[start : function.end_byte]
         elif number == FIELD:
@@ -440,7 +440,7 @@ class Values:
             else:
                 self.touch(receiver, node, guard, ("pass", callee, -1))
         logs = noise(callee)
-        arguments: tuple[Expr, ...] = ()
+        arguments: tuple[FlowExpr, ...] = ()
         if listed.end_byte - listed.start_byte > 2:
             self.nesting += 1
             if listed.kind_id in LISTS:
@@ -449,11 +449,11 @@ class Values:
                 self.value(listed, guard, ESCAPE)
             self.nesting -= 1
         if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
-            return Expr("bind", "", arguments)
+            return FlowExpr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
             line, column = self.place(at)
             self.calls.append(
-                Call(
+                FlowCall(
                     callee,
                     arguments,
                     line,
@@ -469,12 +469,12 @@ class Values:
         if self.nesting > DEEPEST:
             return self.other(node)
         if callee in MAKES:
-            return Expr("make", types, arguments)
-        return Expr("call", callee, arguments, received)
+            return FlowExpr("make", types, arguments)
+        return FlowExpr("call", callee, arguments, received)
 
-    def arguments(self, listed: Node, guard: int, callee: str) -> tuple[Expr, ...]:
+    def arguments(self, listed: Node, guard: int, callee: str) -> tuple[FlowExpr, ...]:
         """The arguments in a list, passed to a callee; without one they are merely read."""
-        result: list[Expr] = []
+        result: list[FlowExpr] = []
         text = self.text
         known = self.known
         for child in listed.named_children:
@@ -489,45 +489,45 @@ class Values:
                         if callee
                         else Access(name, "read", line, guard)
                     )
-                result.append(Expr("name", name))
+                result.append(FlowExpr("name", name))
             elif number != COMMENT:
                 position = ("pass", callee, len(result)) if callee else READ
                 result.append(VALUES[number](self, child, guard, position, ""))
         return tuple(result)
 
-    def subscript(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def subscript(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         path, local = self.path(children[0], guard)
-        index = Expr("other")
+        index = FlowExpr("other")
         for child in listed_in(children[1]):
             index = self.value(child, guard)
         if local:
             self.touch(f"{path}.[]", node, guard, position)
-        return Expr("index", "", (Expr("name", path), index))
+        return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def parenthesized(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def parenthesized(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
         return self.value(children[1], guard, position, target)
 
-    def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
             number = inner.kind_id
             if number in (QUALIFIED, TEMPLATE_FUNCTION):
-                return Expr("function", bare(self.text[inner.start_byte : inner.end_byte]))
+                return FlowExpr("function", bare(self.text[inner.start_byte : inner.end_byte]))
             if number == IDENTIFIER:
                 name = self.text[inner.start_byte : inner.end_byte]
                 if name and name not in self.known and not name.endswith("_"):
-                    return Expr("function", name)
+                    return FlowExpr("function", name)
         return self.value(inner, guard, position, target)
 
-    def last_child(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def last_child(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.value(grammatical(node)[-1], guard, position, target)
 
-    def binary(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def binary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """Operators in a row are walked through, since a long row is a deep tree."""
         operands: list[Node] = []
         signs: list[str] = []
@@ -554,7 +554,7 @@ class Values:
         signs.reverse()
         lefts.reverse()
         joined = signs[0] in JOINING and self.nesting <= DEEPEST and all(sign == signs[0] for sign in signs)
-        parts: list[Expr] = []
+        parts: list[FlowExpr] = []
         outer = guard
         pending: list[Node] = []
         self.nesting += 1
@@ -584,21 +584,21 @@ class Values:
                 parts.append(read)
         self.nesting -= 1
         if joined:
-            return Expr("join", signs[0], tuple(parts))
+            return FlowExpr("join", signs[0], tuple(parts))
         return NOTHING if target is None else self.other(node)
 
     def literal_beside(self, operands: list[Node], index: int) -> bool:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
-    def unary(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def unary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = self.value(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
-            return Expr("number", "-" + inner.text)
+            return FlowExpr("number", "-" + inner.text)
         return NOTHING if target is None else self.other(node)
 
-    def update(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def update(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
         path, local = self.path(operand, guard)
@@ -609,10 +609,10 @@ class Values:
             if "++" in (self.text[node.start_byte : node.start_byte + 2], self.text[node.end_byte - 2 : node.end_byte])
             else "-="
         )
-        self.assignments.append(Assignment(path, Expr("number", "1"), self.line(node), guard, "", sign))
-        return Expr("name", path)
+        self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.line(node), guard, "", sign))
+        return FlowExpr("name", path)
 
-    def assignment(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def assignment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
@@ -626,14 +626,14 @@ class Values:
         self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator, self.key(left, guard)))
         return value
 
-    def key(self, node: Node, guard: int) -> Expr | None:
+    def key(self, node: Node, guard: int) -> FlowExpr | None:
         """The literal in the brackets of an element's path."""
         if node.kind_id != SUBSCRIPT:
             return None
         inner = listed_in(grammatical(node)[1])
         return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
-    def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 5:
             return self.anything(node, guard, position, target)
@@ -647,7 +647,7 @@ class Values:
         self.nesting -= 1
         if self.nesting > DEEPEST:
             return self.other(node)
-        return Expr("choice", "", (condition, true, false))
+        return FlowExpr("choice", "", (condition, true, false))
 
     def outer_text(self, node: Node) -> str:
         """A condition as written, without parentheses around the whole."""
@@ -658,20 +658,20 @@ class Values:
             node = children[1]
         return self.said(node)
 
-    def braces(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def braces(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
             self.anything(node, guard, ESCAPE, "")
             return self.other(node)
         self.nesting += 1
         parts = tuple(self.value(child, guard, ESCAPE) for child in listed_in(node))
         self.nesting -= 1
-        return Expr("list", "", parts)
+        return FlowExpr("list", "", parts)
 
-    def made(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def made(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
         children = grammatical(node)
         kind_ = ""
-        parts: tuple[Expr, ...] = ()
+        parts: tuple[FlowExpr, ...] = ()
         self.nesting += 1
         for child in children:
             if child.kind_id in (ARGUMENTS, BRACES):
@@ -681,12 +681,12 @@ class Values:
         self.nesting -= 1
         if self.nesting > DEEPEST:
             return self.other(node)
-        return Expr("make", kind_, parts)
+        return FlowExpr("make", kind_, parts)
 
-    def thrown(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def thrown(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.anything(node, guard, ESCAPE, "")
 
-    def asked_only(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+    def asked_only(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
@@ -694,52 +694,52 @@ class Values:
         return self.other(node)
 
 
-LITERALS: dict[int, Callable[..., Expr]] = {
-    **{kind(name): Values.number for name in ("true", "false", "null", "number_literal", "char_literal")},
-    STRING: Values.string,
-    RAW_STRING: Values.string,
-    kind("concatenated_string"): Values.strings,
+LITERALS: dict[int, Callable[..., FlowExpr]] = {
+    **{kind(name): FunctionReader.number for name in ("true", "false", "null", "number_literal", "char_literal")},
+    STRING: FunctionReader.string,
+    RAW_STRING: FunctionReader.string,
+    kind("concatenated_string"): FunctionReader.strings,
 }
 
 
-class _Readers(dict[int, Callable[..., Expr]]):
+class _Readers(dict[int, Callable[..., FlowExpr]]):
     """How each kind of node is read; one that is not listed is looked into."""
 
-    def __missing__(self, number: int) -> Callable[..., Expr]:
-        return Values.anything
+    def __missing__(self, number: int) -> Callable[..., FlowExpr]:
+        return FunctionReader.anything
 
 
 VALUES = _Readers(
     {
         **LITERALS,
-        IDENTIFIER: Values.identifier,
-        QUALIFIED: Values.qualified,
-        TEMPLATE_FUNCTION: Values.qualified,
-        FIELD: Values.field,
-        THIS: Values.this,
-        CALL: Values.call,
-        SUBSCRIPT: Values.subscript,
-        PARENTHESIZED: Values.parenthesized,
-        POINTER: Values.pointer,
-        CAST: Values.last_child,
-        BINARY: Values.binary,
-        kind("unary_expression"): Values.unary,
-        kind("update_expression"): Values.update,
-        kind("assignment_expression"): Values.assignment,
-        kind("conditional_expression"): Values.conditional,
-        BRACES: Values.braces,
-        kind("initializer_pair"): Values.last_child,
-        kind("new_expression"): Values.made,
-        kind("compound_literal_expression"): Values.made,
-        kind("co_await_expression"): Values.last_child,
-        kind("throw_statement"): Values.thrown,
-        kind("sizeof_expression"): Values.asked_only,
-        kind("delete_expression"): Values.asked_only,
-        COMMENT: Values.skipped,
-        kind("type_descriptor"): Values.skipped,
-        kind("template_argument_list"): Values.skipped,
-        kind("primitive_type"): Values.skipped,
-        kind("type_identifier"): Values.skipped,
-        kind("field_identifier"): Values.skipped,
+        IDENTIFIER: FunctionReader.identifier,
+        QUALIFIED: FunctionReader.qualified,
+        TEMPLATE_FUNCTION: FunctionReader.qualified,
+        FIELD: FunctionReader.field,
+        THIS: FunctionReader.this,
+        CALL: FunctionReader.call,
+        SUBSCRIPT: FunctionReader.subscript,
+        PARENTHESIZED: FunctionReader.parenthesized,
+        POINTER: FunctionReader.pointer,
+        CAST: FunctionReader.last_child,
+        BINARY: FunctionReader.binary,
+        kind("unary_expression"): FunctionReader.unary,
+        kind("update_expression"): FunctionReader.update,
+        kind("assignment_expression"): FunctionReader.assignment,
+        kind("conditional_expression"): FunctionReader.conditional,
+        BRACES: FunctionReader.braces,
+        kind("initializer_pair"): FunctionReader.last_child,
+        kind("new_expression"): FunctionReader.made,
+        kind("compound_literal_expression"): FunctionReader.made,
+        kind("co_await_expression"): FunctionReader.last_child,
+        kind("throw_statement"): FunctionReader.thrown,
+        kind("sizeof_expression"): FunctionReader.asked_only,
+        kind("delete_expression"): FunctionReader.asked_only,
+        COMMENT: FunctionReader.skipped,
+        kind("type_descriptor"): FunctionReader.skipped,
+        kind("template_argument_list"): FunctionReader.skipped,
+        kind("primitive_type"): FunctionReader.skipped,
+        kind("type_identifier"): FunctionReader.skipped,
+        kind("field_identifier"): FunctionReader.skipped,
     }
 )

@@ -29,7 +29,7 @@ class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
-class Name(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class NameUseInFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a name outside comments, strings and #include lines, per distinct set of conditions.
 
     text: a qualified name as written without spaces (`std::min`, `cv::imread`, `tf2_ros::Buffer`), or a bare word.
@@ -53,7 +53,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """
 
     includes: tuple[Include, ...]
-    qualified: tuple[Name, ...]
+    qualified: tuple[NameUseInFile, ...]
     words: str
     defined: tuple[str, ...] = ()
     using: tuple[str, ...] = ()
@@ -357,7 +357,7 @@ def extract(data: bytes) -> CppFile:
     text, visible, place = scanned.text, scanned.visible, scanned.place
     tied = _tie(visible)
     words: set[bytes] = set()
-    qualified: list[Name] = []
+    qualified: list[NameUseInFile] = []
     seen: dict[tuple[Condition, ...], set[str]] = {}
     for start, end, conditions in _pieces(scanned, tied):
         piece = tied[start:end]
@@ -379,7 +379,7 @@ def extract(data: bytes) -> CppFile:
         for at, name in found:
             if name not in known:
                 known.add(name)
-                qualified.append(Name(name, *place(at), conditions))
+                qualified.append(NameUseInFile(name, *place(at), conditions))
 
     plain = b" ".join(words - _KEYWORD_BYTES).decode().split(" ")
     return CppFile(

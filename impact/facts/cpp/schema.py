@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Parameter(NamedTuple):
+class WrittenParameter(NamedTuple):
     """A parameter of a function. type: as written, with `&` and `*`. default: as written, None for none."""
 
     type: str
@@ -16,7 +16,7 @@ class Parameter(NamedTuple):
     default: str | None = None
 
 
-class Declared(NamedTuple):
+class Declaration(NamedTuple):
     """A function, method, variable, field, alias, enumerator or nested type.
 
     kind: `function`, `variable`, `alias`, `enumerator` or `type`. name: its last part. scope: the namespaces and
@@ -29,13 +29,13 @@ class Declared(NamedTuple):
     scope: str
     offset: int
     type: str = ""
-    parameters: tuple[Parameter, ...] = ()
+    parameters: tuple[WrittenParameter, ...] = ()
     traits: frozenset[str] = frozenset()
     template: tuple[str, ...] = ()
     value: Expr | None = None
 
 
-class Class(NamedTuple):
+class CppClass(NamedTuple):
     """A class that is defined. name: in full. bases: as written. members: by name. template: names of template
     parameters. specialised: template arguments stand behind its name. open: something in it was not understood, so
     that it may have other members. end: where it ends."""
@@ -43,21 +43,21 @@ class Class(NamedTuple):
     name: str
     offset: int
     bases: tuple[str, ...]
-    members: dict[str, list[Declared]]
+    members: dict[str, list[Declaration]]
     template: tuple[str, ...] = ()
     specialised: bool = False
     open: bool = False
     end: int = 0
 
 
-class File(NamedTuple):
+class FileDeclarations(NamedTuple):
     """What a file declares outside of functions. classes, names: in the order of the file; aliases are among the
     names. using: (scope, full name) of each `using a::b`. opened: (scope, namespace) of each `using namespace`.
     spaces: (scope, name, namespace) of each other name of a namespace. added: full names of the namespaces it adds to.
     announced: names of types that are declared but not defined. macros: that it defines."""
 
-    classes: tuple[Class, ...] = ()
-    names: tuple[Declared, ...] = ()
+    classes: tuple[CppClass, ...] = ()
+    names: tuple[Declaration, ...] = ()
     using: tuple[tuple[str, str], ...] = ()
     opened: tuple[tuple[str, str], ...] = ()
     spaces: tuple[tuple[str, str, str], ...] = ()
@@ -104,7 +104,7 @@ class Expr(NamedTuple):
     local: Local | None = None
 
 
-class Place(NamedTuple):
+class CodePlace(NamedTuple):
     """Where a piece of code stands. scope: namespaces and classes around it, in full. owner: the class in whose method
     it is, as far as the file tells, else empty; it may be written without its namespaces. function: it is inside of
     one. opened: namespaces that the blocks around it open. used: names that they make known, in full."""
@@ -116,7 +116,7 @@ class Place(NamedTuple):
     used: tuple[str, ...] = ()
 
 
-class Use(NamedTuple):
+class CppUse(NamedTuple):
     """A place where a word stands in code, and is not declared there.
 
     form: `member` (object.word), `scoped` (a::word), `bare`, `initializer` (of a base class or member), or `assigned`
@@ -129,7 +129,7 @@ class Use(NamedTuple):
     offset: int
     form: str
     name: str
-    place: Place
+    place: CodePlace
     object: Expr | None = None
     arrow: bool = False
     call: tuple[Expr, ...] | None = None

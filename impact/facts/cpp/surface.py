@@ -16,7 +16,7 @@ from ..surface import Entity, HeaderSurface
 from . import Scan, includes_of, scan
 from .surface_declarations import (
     ClassHead,
-    Declared,
+    Declarator,
     Head,
     class_head,
     declarators,
@@ -415,7 +415,7 @@ class _Reader:
         for one in found:
             self._emit(one, reading, deprecated, start, at, "")
 
-    def _emit(self, one: Declared, reading: Head, deprecated: str | None, start: int, at: int, macro: str) -> None:
+    def _emit(self, one: Declarator, reading: Head, deprecated: str | None, start: int, at: int, macro: str) -> None:
         scope = self.scopes[-1]
         kind = one.kind
         traits = one.traits

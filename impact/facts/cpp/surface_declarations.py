@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..surface import Argument, Base, TemplateParameter
+from ..surface import Base, CppParameter, TemplateParameter
 from .surface_types import (
     ASIDE,
     ATTRIBUTE_WORDS,
@@ -27,13 +27,13 @@ from .surface_types import (
 )
 
 
-class Declared(NamedTuple):
+class Declarator(NamedTuple):
     """What a declaration declares. name: as written, empty for an alias or the like without one."""
 
     kind: str
     name: str
     type: str = ""
-    parameters: tuple[Argument, ...] | None = None
+    parameters: tuple[CppParameter, ...] | None = None
     traits: frozenset[str] = frozenset()
     value: str = ""
 
@@ -332,7 +332,7 @@ def _base(tokens: Sequence[str], kind: str) -> Base:
     return Base(type_text(rest), access, virtual)
 
 
-def declared(tokens: list[str], head: Head, class_name: str) -> list[Declared] | None:
+def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator] | None:
     """What a declaration declares behind its head; nothing for what is defined elsewhere (`void A::f() {}`). None when
     it is not understood. class_name: of the class it stands in, empty for none."""
     rest = tokens[head.place :]
@@ -395,7 +395,7 @@ def _called(
     builtin: bool,
     head: Head,
     class_name: str,
-) -> list[Declared] | None:
+) -> list[Declarator] | None:
     """A name with parentheses behind it."""
     start, stop = units[-1]
     unit = rest[start:stop]
@@ -439,7 +439,7 @@ def _called(
         head = head._replace(traits=head.traits | late)
     if "typedef" in head.words:
         type_ = named([*before, name])[0]
-        return [Declared("alias", name, type_ + parameters_text(group))]
+        return [Declarator("alias", name, type_ + parameters_text(group))]
     kind = "method" if class_name and "friend" not in head.traits else "function"
     return [_function(kind, name, named([*before, name])[0], rest, group, behind, head)]
 
@@ -463,7 +463,7 @@ def _values(group: Sequence[str]) -> bool:
 
 def _function(
     kind: str, name: str, type_: str, rest: list[str], group: Sequence[str], behind: int, head: Head
-) -> Declared:
+) -> Declarator:
     parameters, variadic = arguments_of(group)
     traits = set(head.traits)
     if variadic:
@@ -519,10 +519,10 @@ def _function(
         place += 1
     if "override" in traits or ("final" in traits and kind in ("method", "destructor")):
         traits.add("virtual")
-    return Declared(kind, name, type_, parameters, frozenset(traits))
+    return Declarator(kind, name, type_, parameters, frozenset(traits))
 
 
-def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: Head) -> list[Declared] | None:
+def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: Head) -> list[Declarator] | None:
     """A function whose name begins with `operator`."""
     if place and rest[place - 1] == "::":
         return []
@@ -562,7 +562,7 @@ def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: H
     return [_function("operator", name, named([*before, "x"])[0], rest, group, behind, head)]
 
 
-def _grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Declared] | None:
+def _grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Declarator] | None:
     """`type (*name)(arguments)`, `type (name)(arguments)`."""
     group = rest[place + 1 : behind - 1]
     if len(group) == 1 and group[0].isidentifier() and behind < len(rest) and rest[behind] == "(":
@@ -583,12 +583,12 @@ def _grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Decla
     type_, name = named(piece)
     if not name:
         return None
-    return [Declared("alias" if "typedef" in head.words else "variable", name, type_, None, head.traits)]
+    return [Declarator("alias" if "typedef" in head.words else "variable", name, type_, None, head.traits)]
 
 
-def _variables(rest: list[str], head: Head) -> list[Declared] | None:
+def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
     """`type a, *b = 0, c[3];`"""
-    found: list[Declared] = []
+    found: list[Declarator] = []
     base: list[str] = []
     for number, piece in enumerate(split(list(rest))):
         value = ""
@@ -620,7 +620,7 @@ def _variables(rest: list[str], head: Head) -> list[Declared] | None:
             traits = traits | {"const"}
         kind = "alias" if "typedef" in head.words else "variable"
         keep = kind == "variable" and traits & {"const", "constexpr"} and len(value) <= 60
-        found.append(Declared(kind, name, type_, None, traits, value if keep else ""))
+        found.append(Declarator(kind, name, type_, None, traits, value if keep else ""))
     return found
 
 

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from collections.abc import Iterator
 
 from ..condition import Condition
-from ..surface import Argument, Entity
+from ..surface import CppParameter, Entity
 from . import Scan
 from .surface_types import arguments_of, tokens_of
 
@@ -91,9 +91,9 @@ def _macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: set[s
         seen.add((name, conditions))
         plain = None
         if parameters is not None:
-            plain = tuple(Argument(parameter.type) for parameter in parameters[0])
+            plain = tuple(CppParameter(parameter.type) for parameter in parameters[0])
             if parameters[1] or "..." in match[2]:
-                plain = (*(one for one in plain if one.type), Argument("..."))
+                plain = (*(one for one in plain if one.type), CppParameter("..."))
         line = scanned.place(start)[0]
         yield Entity("macro", name, line, parameters=plain, value=value, conditions=conditions)
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ..surface import Argument
+from ..surface import CppParameter
 
 TOKEN = re.compile(
     r"[^\W\d]\w*|\.?\d(?:[eEpP][+-]|[\w.'])*"
@@ -209,7 +209,7 @@ def parameters_text(tokens: Sequence[str]) -> str:
     return "(" + ", ".join("..." if piece == ["..."] else argument(piece).type for piece in pieces if piece) + ")"
 
 
-def arguments_of(tokens: Sequence[str]) -> tuple[tuple[Argument, ...], bool]:
+def arguments_of(tokens: Sequence[str]) -> tuple[tuple[CppParameter, ...], bool]:
     """The parameters between two parentheses, and whether `...` ends them."""
     if not tokens or (len(tokens) == 1 and tokens[0] == "void"):
         return (), False
@@ -228,13 +228,13 @@ def _is_named(tokens: Sequence[str]) -> bool:
     return bool(named(tokens)[1])
 
 
-def argument(tokens: Sequence[str]) -> Argument:
+def argument(tokens: Sequence[str]) -> CppParameter:
     """A parameter of a function."""
     return _argument(tuple(tokens))
 
 
 @lru_cache(maxsize=65536)
-def _argument(tokens: tuple[str, ...]) -> Argument:
+def _argument(tokens: tuple[str, ...]) -> CppParameter:
     default = None
     if "=" in tokens:
         front = split(tokens, "=")[0]
@@ -242,7 +242,7 @@ def _argument(tokens: tuple[str, ...]) -> Argument:
             default = joined(tokens[len(front) + 1 :])
             tokens = tuple(front)
     type_, name = named(tokens)
-    return Argument(seen_by_callers(type_), name, default, "..." in tokens and "..." in type_)
+    return CppParameter(seen_by_callers(type_), name, default, "..." in tokens and "..." in type_)
 
 
 def seen_by_callers(type_: str) -> str:

@@ -9,7 +9,7 @@ import msgspec
 from ..place import Problem
 
 
-class Piece(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ValuePart(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A part of a value. text: by kind; parts: values it is made of.
 
     Where a name may itself be computed (`$(find-pkg-share $(var robot))`) text is empty and the name is parts[0].
@@ -41,13 +41,13 @@ class Piece(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     kind: str
     text: str = ""
-    parts: tuple[tuple[Piece, ...], ...] = ()
+    parts: tuple[tuple[ValuePart, ...], ...] = ()
 
 
-Value = tuple[Piece, ...]
+Value = tuple[ValuePart, ...]
 
 
-class Condition(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ActionCondition(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What an action hangs on. kind: `if` or `unless` the value is true; `each` once for each of what is walked
     through; `after` an event or some time, which the value describes."""
 
@@ -85,7 +85,7 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
     kind: str
     line: int
     attributes: tuple[tuple[str, Value], ...] = ()
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[ActionCondition, ...] = ()
     children: tuple[Action, ...] = ()
 
     def get(self, name: str) -> Value | None:
@@ -111,7 +111,7 @@ SHOWN = 120
 
 def literal(text: str) -> Value:
     """A value that is plain text."""
-    return (Piece("text", text),)
+    return (ValuePart("text", text),)
 
 
 def plain(value: Value | None) -> str | None:
@@ -123,22 +123,22 @@ def plain(value: Value | None) -> str | None:
 
 def together(values: Iterator[Value] | list[Value] | tuple[Value, ...]) -> Value:
     """Values one after the other as one, literal neighbours joined."""
-    pieces: list[Piece] = []
+    pieces: list[ValuePart] = []
     for value in values:
         for piece in value:
             if piece.kind == "text" and pieces and pieces[-1].kind == "text":
-                pieces[-1] = Piece("text", pieces[-1].text + piece.text)
+                pieces[-1] = ValuePart("text", pieces[-1].text + piece.text)
             elif piece.kind != "text" or piece.text:
                 pieces.append(piece)
     return tuple(pieces) or literal("")
 
 
-def named(kind: str, name: Value, *rest: Value) -> Piece:
+def named(kind: str, name: Value, *rest: Value) -> ValuePart:
     """A piece whose name may be computed."""
     text = plain(name)
-    return Piece(kind, text, rest) if text else Piece(kind, "", (name, *rest))
+    return ValuePart(kind, text, rest) if text else ValuePart(kind, "", (name, *rest))
 
 
-def other(source: str) -> Piece:
+def other(source: str) -> ValuePart:
     """A piece that could not be read."""
-    return Piece("other", " ".join(source.split())[:SHOWN])
+    return ValuePart("other", " ".join(source.split())[:SHOWN])

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
-from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
+from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, together
 from .documents import read_document
 from .parameter_files import DEEPEST
 
@@ -44,7 +44,7 @@ def substitutions(text: str, generation: int) -> Value:
 
 def _ros1(text: str) -> Value:
     if text.startswith("$(eval ") and text.endswith(")"):
-        return (Piece("eval", "roslaunch", (literal(text[7:-1]),)),)
+        return (ValuePart("eval", "roslaunch", (literal(text[7:-1]),)),)
     values: list[Value] = []
     at = 0
     for m in _ROS1.finditer(text):
@@ -59,14 +59,14 @@ def _no_opening(text: str) -> Value:
     return (other(text),) if "$(" in text else literal(text)
 
 
-def _ros1_piece(words: list[str], source: str) -> Piece:
+def _ros1_piece(words: list[str], source: str) -> ValuePart:
     verb, args = (words[0], words[1:]) if words else ("", [])
     if verb in ("arg", "anon", "env", "find") and len(args) == 1:
-        return Piece(verb, args[0])
+        return ValuePart(verb, args[0])
     if verb == "optenv" and args:
-        return Piece("env", args[0], (literal(" ".join(args[1:])),))
+        return ValuePart("env", args[0], (literal(" ".join(args[1:])),))
     if verb == "dirname" and not args:
-        return Piece("dirname")
+        return ValuePart("dirname")
     return other(source)
 
 
@@ -113,7 +113,7 @@ class _Template:
         values.append(literal("".join(held)))
         return together(values)
 
-    def _substitution(self, depth: int, quote: str) -> Piece:
+    def _substitution(self, depth: int, quote: str) -> ValuePart:
         begin = self.at
         m = _IDENTIFIER.match(self.text, begin + 2)
         if m is None or depth > DEEPEST:
@@ -152,30 +152,30 @@ class _Template:
         return together(values)
 
 
-def _ros2_piece(verb: str, args: list[Value], source: str) -> Piece:
+def _ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
     if verb in _ROS2_NAMED and 1 <= len(args) <= 2:
         return named(_ROS2_NAMED[verb], *args)
     if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
         return named(_ROS2_PLACES.get(verb, verb), args[0])
     if verb == "exec-in-pkg" and len(args) == 2:
-        return Piece("executable", "", tuple(args))
+        return ValuePart("executable", "", tuple(args))
     if verb in ("dirname", "filename") and not args:
-        return Piece(verb)
+        return ValuePart(verb)
     if verb == "eval" and args:
-        return Piece("eval", "launch", (spaced(args),))
+        return ValuePart("eval", "launch", (spaced(args),))
     if verb == "file-content" and len(args) == 1:
-        return Piece("content", "", (args[0],))
+        return ValuePart("content", "", (args[0],))
     if verb == "command" and args:
-        return Piece("command", "", (args[0],))
+        return ValuePart("command", "", (args[0],))
     if verb in ("equals", "not-equals") and len(args) == 2:
-        same = Piece("equals", "", tuple(args))
-        return same if verb == "equals" else Piece("not", "", ((same,),))
+        same = ValuePart("equals", "", tuple(args))
+        return same if verb == "equals" else ValuePart("not", "", ((same,),))
     if verb == "not" and len(args) == 1:
-        return Piece("not", "", (args[0],))
+        return ValuePart("not", "", (args[0],))
     if verb in ("and", "or", "any", "all"):
-        return Piece({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
+        return ValuePart({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
     if verb == "if" and 2 <= len(args) <= 3:
-        return Piece("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
+        return ValuePart("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
     return other(source)
 
 
@@ -372,16 +372,16 @@ class _Reader:
         conditions = self.conditions(entity)
         if entity.tag == "timer":
             period = self.value(entity.attributes.get("period", ""))
-            conditions = (*conditions, Condition("after", together([period, literal(" s")]), entity.line))
+            conditions = (*conditions, ActionCondition("after", together([period, literal(" s")]), entity.line))
         if entity.tag == "rosparam" and entity.text:
             fill = "subst_value" in entity.attributes
             attributes.append(("text", self.value(entity.text) if fill else literal(entity.text)))
         children = self.actions(entity.children, kind)
         return [Action(kind, entity.line, tuple(attributes), conditions, children)]
 
-    def conditions(self, entity: _Entity) -> tuple[Condition, ...]:
+    def conditions(self, entity: _Entity) -> tuple[ActionCondition, ...]:
         return tuple(
-            Condition(kind, self.value(entity.attributes[kind]), entity.line)
+            ActionCondition(kind, self.value(entity.attributes[kind]), entity.line)
             for kind in ("if", "unless")
             if kind in entity.attributes
         )

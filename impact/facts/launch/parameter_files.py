@@ -12,7 +12,7 @@ from ..markup import decode
 from ..place import Problem
 
 
-class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ParameterEntry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A value of a parameter file. path: its keys from the root. value: bool, int, float, str, None, list or, below a
     list, dict. line: of the value, of its key where it is a list."""
 
@@ -24,7 +24,7 @@ class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class ParameterFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The values of a YAML file in its order; mappings are followed, an empty one is a value."""
 
-    entries: tuple[Entry, ...]
+    entries: tuple[ParameterEntry, ...]
     problems: tuple[Problem, ...] = ()
 
 
@@ -184,18 +184,18 @@ def _clean(text: str) -> str:
 def extract(data: bytes | str) -> ParameterFile:
     """The values of a YAML file of parameters. Never raises; what cannot be read is a problem, the rest is kept."""
     root, problems = yaml_tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
-    entries: list[Entry] = []
+    entries: list[ParameterEntry] = []
     budget = [MOST_ENTRIES]
     if root is not None and root.kind == "map":
         _flatten(root, (), entries, budget)
     elif root is not None and (root.kind == "list" or root.value is not None):
-        entries.append(Entry((), _plain_value(root, budget), root.line))
+        entries.append(ParameterEntry((), _plain_value(root, budget), root.line))
     if budget[0] <= 0:
         problems.append(Problem(1, f"has more than {MOST_ENTRIES} values"))
     return ParameterFile(tuple(entries), tuple(problems))
 
 
-def _flatten(node: YamlNode, path: tuple[str, ...], entries: list[Entry], budget: list[int]) -> bool:
+def _flatten(node: YamlNode, path: tuple[str, ...], entries: list[ParameterEntry], budget: list[int]) -> bool:
     """Adds the values below a mapping; False when the budget is used up."""
     own = {key for key, _ in node.value if key != "<<"}
     for key, child in node.value:
@@ -212,7 +212,7 @@ def _flatten(node: YamlNode, path: tuple[str, ...], entries: list[Entry], budget
             if not _flatten(child, (*path, key), entries, budget):
                 return False
         else:
-            entries.append(Entry((*path, key), _plain_value(child, budget), child.line))
+            entries.append(ParameterEntry((*path, key), _plain_value(child, budget), child.line))
     return True
 
 

@@ -13,27 +13,27 @@ from typing import Any
 from ....edges.dispatch import node_methods
 from ..place import Problem
 from ..python.source import read
-from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
+from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, plain, together
 from .parameter_files import DEEPEST
-from .python_calls import MAKERS, MOST_TURNS, Call
+from .python_calls import MAKERS, MOST_TURNS, LaunchCall
 from .python_values import (
-    Asked,
-    Class,
-    Constant,
+    ConditionValue,
     Context,
     Either,
     FilledFile,
-    Function,
     Guarded,
     Items,
+    LaunchClass,
+    LaunchConstant,
+    LaunchFunction,
+    LaunchModule,
+    LaunchScope,
     Method,
-    Module,
     Object,
     Pairs,
-    Scope,
-    Text,
+    TextValue,
     TooMuch,
-    Typed,
+    TypedValue,
     Unknown,
     YamlContent,
     all_of,
@@ -90,11 +90,11 @@ class Walker:
     """One walk through a file."""
 
     def __init__(self) -> None:
-        self.module = Scope(None)
-        self.module.names["__file__"] = Text((Piece("filename"),))
+        self.module = LaunchScope(None)
+        self.module.names["__file__"] = TextValue((ValuePart("filename"),))
         self.scope = self.module
-        self.conditions: list[Condition] = []
-        self.returns: list[tuple[tuple[Condition, ...], Any]] = []
+        self.conditions: list[ActionCondition] = []
+        self.returns: list[tuple[tuple[ActionCondition, ...], Any]] = []
         self.base = 0
         self.calls = 0
         self.steps = 0
@@ -102,7 +102,7 @@ class Walker:
 
     def launch(self, tree: ast.Module) -> tuple[tuple[Action, ...], tuple[Problem, ...]]:
         self.block(tree.body)
-        entry = next((f for f in map(self.module.names.get, ENTRIES) if isinstance(f, Function)), None)
+        entry = next((f for f in map(self.module.names.get, ENTRIES) if isinstance(f, LaunchFunction)), None)
         if entry is None:
             return (), (Problem(1, "has no generate_launch_description()"),)
         result = self.call_function(entry, [], {})
@@ -125,7 +125,7 @@ class Walker:
                 outcome = handler(self, statement)
                 if outcome is True:
                     return True
-                if isinstance(outcome, Condition):
+                if isinstance(outcome, ActionCondition):
                     # One branch jumps: all that follows stands under the other's condition.
                     self.conditions.append(outcome)
                     added += 1
@@ -134,7 +134,7 @@ class Walker:
             if added:
                 del self.conditions[-added:]
 
-    def under(self, statements: Sequence[ast.stmt], *conditions: Condition) -> bool:
+    def under(self, statements: Sequence[ast.stmt], *conditions: ActionCondition) -> bool:
         """Walks statements under more conditions; True as from block()."""
         count = len(self.conditions)
         self.conditions += conditions
@@ -188,7 +188,7 @@ class Walker:
                 holder.attributes[target.attr] = value
 
     def run_Return(self, statement: ast.Return) -> bool:
-        value = Constant(None) if statement.value is None else self.value(statement.value)
+        value = LaunchConstant(None) if statement.value is None else self.value(statement.value)
         self.returns.append((tuple(self.conditions[self.base :]), value))
         return True
 
@@ -200,12 +200,12 @@ class Walker:
 
     run_Continue = run_Break
 
-    def run_If(self, statement: ast.If) -> bool | Condition | None:
+    def run_If(self, statement: ast.If) -> bool | ActionCondition | None:
         decided = self.truth(statement.test)
         if isinstance(decided, bool):
             return self.block(statement.body if decided else statement.orelse)
-        yes = Condition("if", decided, statement.lineno)
-        no = Condition("unless", decided, statement.lineno)
+        yes = ActionCondition("if", decided, statement.lineno)
+        no = ActionCondition("unless", decided, statement.lineno)
         before = dict(self.scope.names)
         body_jumps = self.under(statement.body, yes)
         after_body, self.scope.names = self.scope.names, dict(before)
@@ -230,7 +230,7 @@ class Walker:
         if turns is None:
             over = f"for {source_of(statement.target)} in {source_of(statement.iter)}"
             self.bind_unknown(statement.target)
-            self.under(statement.body, Condition("each", (other(over),), statement.lineno))
+            self.under(statement.body, ActionCondition("each", (other(over),), statement.lineno))
         else:
             for turn in turns:
                 value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
@@ -256,7 +256,7 @@ class Walker:
 
     def run_While(self, statement: ast.While) -> None:
         self.under(
-            statement.body, Condition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno)
+            statement.body, ActionCondition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno)
         )
 
     def run_With(self, statement: ast.With) -> bool:
@@ -273,28 +273,28 @@ class Walker:
         return self.block(statement.finalbody) or jumps
 
     def run_FunctionDef(self, statement: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
-        self.scope.names[statement.name] = Function(statement, self.scope)
+        self.scope.names[statement.name] = LaunchFunction(statement, self.scope)
 
     run_AsyncFunctionDef = run_FunctionDef
 
     def run_ClassDef(self, statement: ast.ClassDef) -> None:
-        type_ = Class(statement.name, self.scope)
+        type_ = LaunchClass(statement.name, self.scope)
         for inner in statement.body:
             if isinstance(inner, (ast.FunctionDef, ast.AsyncFunctionDef)):
-                type_.methods[inner.name] = Function(inner, self.scope)
+                type_.methods[inner.name] = LaunchFunction(inner, self.scope)
         self.scope.names[statement.name] = type_
 
     def run_Import(self, statement: ast.Import) -> None:
         for alias in statement.names:
             if alias.asname:
-                self.scope.names[alias.asname] = Module(alias.name)
+                self.scope.names[alias.asname] = LaunchModule(alias.name)
             else:
                 top = alias.name.partition(".")[0]
-                self.scope.names[top] = Module(top)
+                self.scope.names[top] = LaunchModule(top)
 
     def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
         for alias in statement.names:
-            self.scope.names[alias.asname or alias.name] = Module(f"{statement.module or ''}.{alias.name}")
+            self.scope.names[alias.asname or alias.name] = LaunchModule(f"{statement.module or ''}.{alias.name}")
 
     # Conditions
 
@@ -303,9 +303,9 @@ class Walker:
         return self.truth_of(self.value(node), node)
 
     def truth_of(self, value: Any, node: ast.AST) -> bool | Value:
-        if isinstance(value, Constant):
+        if isinstance(value, LaunchConstant):
             return bool(value.value)
-        if isinstance(value, Text):
+        if isinstance(value, TextValue):
             if not value.is_str:
                 return True
             text = plain(value.value)
@@ -313,13 +313,13 @@ class Walker:
                 return bool(text)
             if len(value.value) == 1 and value.value[0].kind in _BOOLEAN_PIECES:
                 return value.value
-            return (Piece("not", "", ((Piece("equals", "", (value.value, literal(""))),),)),)
+            return (ValuePart("not", "", ((ValuePart("equals", "", (value.value, literal(""))),),)),)
         if isinstance(value, (Items, Pairs)):
             if not value.items:
                 return False
             if not any(isinstance(item, Guarded) for item in value.items):
                 return True
-        if isinstance(value, (Module, Function, Object, Class, Action, Context)):
+        if isinstance(value, (LaunchModule, LaunchFunction, Object, LaunchClass, Action, Context)):
             return True
         return (other(source_of(node)),)
 
@@ -338,11 +338,11 @@ class Walker:
                 same = True
             elif all(outcome is False for outcome in outcomes):
                 same = False
-            elif isinstance(left, Text) and all(isinstance(item, Text) for item in items):
-                same = (Piece("in", "", (left.value, *(item.value for item in items))),)
-        elif isinstance(left, Constant) and isinstance(right, Constant):
+            elif isinstance(left, TextValue) and all(isinstance(item, TextValue) for item in items):
+                same = (ValuePart("in", "", (left.value, *(item.value for item in items))),)
+        elif isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return calculated(node, left.value, right.value)
-        elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(left, Text) and isinstance(right, Text):
+        elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(left, TextValue) and isinstance(right, TextValue):
             inner, outer = plain(left.value), plain(right.value)
             if inner is not None and outer is not None:
                 same = inner in outer
@@ -350,20 +350,20 @@ class Walker:
             return Unknown(source_of(node))
         negated = isinstance(op, (ast.NotEq, ast.IsNot, ast.NotIn))
         if isinstance(same, bool):
-            return Constant(same != negated)
-        return Text((Piece("not", "", (same,)),) if negated else same)
+            return LaunchConstant(same != negated)
+        return TextValue((ValuePart("not", "", (same,)),) if negated else same)
 
     def equal(self, left: Any, right: Any) -> bool | Value | None:
         """Whether two values are the same; None when that cannot be told."""
-        if isinstance(left, Constant) and isinstance(right, Constant):
+        if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return left.value == right.value
-        if isinstance(left, Text) and isinstance(right, Text):
+        if isinstance(left, TextValue) and isinstance(right, TextValue):
             a, b = plain(left.value), plain(right.value)
             if a is not None and b is not None:
                 return a == b
             if not (left.is_str and right.is_str):
                 return False
-            return (Piece("equals", "", (left.value, right.value)),)
+            return (ValuePart("equals", "", (left.value, right.value)),)
         if isinstance(left, Either) or isinstance(right, Either):
             return None
         if isinstance(left, Unknown) or isinstance(right, Unknown):
@@ -381,20 +381,20 @@ class Walker:
 
     def value_Constant(self, node: ast.Constant) -> Any:
         if isinstance(node.value, str):
-            return Text(literal(node.value))
+            return TextValue(literal(node.value))
         if node.value is None or isinstance(node.value, (bool, int, float)):
-            return Constant(node.value)
+            return LaunchConstant(node.value)
         return Unknown(source_of(node))
 
     def value_Name(self, node: ast.Name) -> Any:
         found = self.scope.look(node.id)
-        return Module(node.id) if found is None else found
+        return LaunchModule(node.id) if found is None else found
 
     def value_Attribute(self, node: ast.Attribute) -> Any:
         receiver = self.value(node.value)
         name = node.attr
-        if isinstance(receiver, Module):
-            return Module(f"{receiver.path}.{name}")
+        if isinstance(receiver, LaunchModule):
+            return LaunchModule(f"{receiver.path}.{name}")
         if isinstance(receiver, Object):
             if name in receiver.attributes:
                 return receiver.attributes[name]
@@ -402,8 +402,8 @@ class Walker:
             return Unknown(source_of(node)) if method is None else method._replace(self=receiver)
         if isinstance(receiver, Context) and name == "launch_configurations":
             return Context(True)
-        if isinstance(receiver, Text) and name == "parent":
-            return Text(folder_of(receiver.value))
+        if isinstance(receiver, TextValue) and name == "parent":
+            return TextValue(folder_of(receiver.value))
         if isinstance(receiver, Items) and name == "entities":
             return receiver
         if isinstance(receiver, Unknown):
@@ -413,12 +413,12 @@ class Walker:
     def value_Subscript(self, node: ast.Subscript) -> Any:
         holder = self.value(node.value)
         key = self.value(node.slice) if not isinstance(node.slice, ast.Slice) else None
-        if isinstance(holder, Module) and holder.path == "os.environ" and isinstance(key, Text):
-            return Text((named("env", key.value),))
-        if isinstance(holder, YamlContent) and isinstance(key, Text):
+        if isinstance(holder, LaunchModule) and holder.path == "os.environ" and isinstance(key, TextValue):
+            return TextValue((named("env", key.value),))
+        if isinstance(holder, YamlContent) and isinstance(key, TextValue):
             return holder._replace(keys=(*holder.keys, key.value))
-        if isinstance(holder, Context) and isinstance(key, Text):
-            return Text((named("arg", key.value),))
+        if isinstance(holder, Context) and isinstance(key, TextValue):
+            return TextValue((named("arg", key.value),))
         if isinstance(holder, Pairs):
             found = holder.get(key)
             if found is not None and not isinstance(found, Guarded):
@@ -460,15 +460,15 @@ class Walker:
         for part in node.values:
             inner = part.value if isinstance(part, ast.FormattedValue) else part
             values.append(self.text(self.value(inner), inner))
-        return Text(together(values))
+        return TextValue(together(values))
 
     def value_BinOp(self, node: ast.BinOp) -> Any:
         left, right = self.value(node.left), self.value(node.right)
         if isinstance(node.op, ast.Add):
             return self.add(left, right, node)
-        if isinstance(node.op, ast.Div) and isinstance(left, Text):
-            return Text((Piece("join", "", (left.value, self.text(right, node.right))),), left.is_str)
-        if isinstance(node.op, ast.Mod) and isinstance(left, Text):
+        if isinstance(node.op, ast.Div) and isinstance(left, TextValue):
+            return TextValue((ValuePart("join", "", (left.value, self.text(right, node.right))),), left.is_str)
+        if isinstance(node.op, ast.Mod) and isinstance(left, TextValue):
             pattern = plain(left.value)
             given = right.items if isinstance(right, Items) else [right]
             if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
@@ -477,8 +477,8 @@ class Walker:
                     values.append(literal(piece))
                     if place < len(given):
                         values.append(self.text(given[place], node.right))
-                return Text(together(values))
-        if isinstance(left, Constant) and isinstance(right, Constant):
+                return TextValue(together(values))
+        if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return calculated(node, left.value, right.value)
         if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
             made = Pairs(list(left.items), len(self.conditions))
@@ -491,16 +491,16 @@ class Walker:
         if isinstance(left, Items) and isinstance(right, Items):
             self.spend(len(left.items) + len(right.items))
             return Items([*left.items, *right.items], len(self.conditions), left.kind)
-        if isinstance(left, Text) or isinstance(right, Text):
-            if isinstance(left, (Text, Either)) and isinstance(right, (Text, Either)):
+        if isinstance(left, TextValue) or isinstance(right, TextValue):
+            if isinstance(left, (TextValue, Either)) and isinstance(right, (TextValue, Either)):
                 parts = [self.text(left, node), self.text(right, node)]
-                return Text(together(parts), all(getattr(v, "is_str", True) for v in (left, right)))
+                return TextValue(together(parts), all(getattr(v, "is_str", True) for v in (left, right)))
             if isinstance(left, Items) or isinstance(right, Items):
                 # A substitution and a list of them
-                return Text(together([self.text(left, node), self.text(right, node)]), False)
+                return TextValue(together([self.text(left, node), self.text(right, node)]), False)
             if isinstance(left, Unknown) or isinstance(right, Unknown):
-                return Text(together([self.text(left, node), self.text(right, node)]))
-        if isinstance(left, Constant) and isinstance(right, Constant) and isinstance(node, ast.BinOp):
+                return TextValue(together([self.text(left, node), self.text(right, node)]))
+        if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant) and isinstance(node, ast.BinOp):
             return calculated(node, left.value, right.value)
         return Unknown(source_of(node))
 
@@ -520,16 +520,22 @@ class Walker:
                         break
                 continue
             open_.append(truth)
-        return Text((Piece("or" if is_or else "and", "", tuple(open_)),)) if len(open_) > 1 else Text(open_[0])
+        return (
+            TextValue((ValuePart("or" if is_or else "and", "", tuple(open_)),))
+            if len(open_) > 1
+            else TextValue(open_[0])
+        )
 
     def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
             truth = self.truth(node.operand)
-            return Constant(not truth) if isinstance(truth, bool) else Text((Piece("not", "", (truth,)),))
+            return (
+                LaunchConstant(not truth) if isinstance(truth, bool) else TextValue((ValuePart("not", "", (truth,)),))
+            )
         value = self.value(node.operand)
-        if isinstance(value, Constant) and isinstance(value.value, (int, float)):
+        if isinstance(value, LaunchConstant) and isinstance(value.value, (int, float)):
             if isinstance(node.op, ast.USub):
-                return Constant(-value.value)
+                return LaunchConstant(-value.value)
             if isinstance(node.op, ast.UAdd):
                 return value
         return Unknown(source_of(node))
@@ -541,7 +547,7 @@ class Walker:
         return Either(truth, self.value(node.body), self.value(node.orelse))
 
     def value_Lambda(self, node: ast.Lambda) -> Any:
-        return Function(node, self.scope)
+        return LaunchFunction(node, self.scope)
 
     def value_NamedExpr(self, node: ast.NamedExpr) -> Any:
         value = self.value(node.value)
@@ -552,7 +558,7 @@ class Walker:
         return self.value(node.value)
 
     def value_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
-        outer, self.scope = self.scope, Scope(self.scope)
+        outer, self.scope = self.scope, LaunchScope(self.scope)
         made: list[Any] = []
         depth = len(self.conditions)
 
@@ -569,7 +575,7 @@ class Walker:
             unknown = turns is None
             if turns is None:
                 over = f"for {source_of(generator.target)} in {source_of(generator.iter)}"
-                self.conditions.append(Condition("each", (other(over),), node.lineno))
+                self.conditions.append(ActionCondition("each", (other(over),), node.lineno))
                 turns = [None]
             for turn in turns:
                 start = len(self.conditions)
@@ -582,7 +588,9 @@ class Walker:
                     self.bind(generator.target, turn)
                 truths = [self.truth(test) for test in generator.ifs]
                 if not any(truth is False for truth in truths):
-                    self.conditions += [Condition("if", t, node.lineno) for t in truths if not isinstance(t, bool)]
+                    self.conditions += [
+                        ActionCondition("if", t, node.lineno) for t in truths if not isinstance(t, bool)
+                    ]
                     walk(place + 1)
                 del self.conditions[start:]
             if unknown:
@@ -629,12 +637,12 @@ class Walker:
                 keywords[keyword.arg] = value
             elif isinstance(value, Pairs):
                 for key, held in value.items:
-                    name = plain(key.value) if isinstance(key, Text) else None
+                    name = plain(key.value) if isinstance(key, TextValue) else None
                     if name is not None:
                         keywords[name] = held
-        if isinstance(function, Function):
+        if isinstance(function, LaunchFunction):
             return self.call_function(function, arguments, keywords)
-        if isinstance(function, Class):
+        if isinstance(function, LaunchClass):
             made = Object(function)
             init = function.methods.get("__init__")
             if init is not None:
@@ -642,17 +650,17 @@ class Walker:
             return made
         if isinstance(function, Method):
             return self.call_method(function, arguments, keywords, node)
-        if isinstance(function, Module):
+        if isinstance(function, LaunchModule):
             maker = MAKERS.get(function.path.rpartition(".")[2])
             if maker is not None:
-                return maker(Call(self, node, function.path, arguments, keywords))
+                return maker(LaunchCall(self, node, function.path, arguments, keywords))
         return Unknown(source_of(node))
 
-    def call_function(self, function: Function, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+    def call_function(self, function: LaunchFunction, arguments: list[Any], keywords: dict[str, Any]) -> Any:
         node = function.node
         if self.calls >= DEEPEST_CALL:
             return Unknown(getattr(node, "name", "lambda"))
-        scope = Scope(function.scope)
+        scope = LaunchScope(function.scope)
         signature = node.args
         names = [a.arg for a in (*signature.posonlyargs, *signature.args)]
         if function.self is not None:
@@ -675,7 +683,7 @@ class Walker:
             if key in known:
                 scope.names[key] = value
             else:
-                rest.append((Text(literal(key)), value))
+                rest.append((TextValue(literal(key)), value))
         if signature.kwarg is not None:
             scope.names[signature.kwarg.arg] = Pairs(rest, len(self.conditions))
         self.scope, self.returns, self.base = scope, [], len(self.conditions)
@@ -691,7 +699,7 @@ class Walker:
 
     def result(self) -> Any:
         """What the return statements reached give together."""
-        value: Any = Constant(None)
+        value: Any = LaunchConstant(None)
         for place, (conditions, returned) in enumerate(reversed(self.returns)):
             if not conditions or place == 0:
                 # The last one is what remains when no earlier one was taken.
@@ -706,20 +714,20 @@ class Walker:
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
-                return Constant(None)
+                return LaunchConstant(None)
             if name == "extend" and isinstance(first, Items):
                 self.extend(receiver, first.items)
-                return Constant(None)
+                return LaunchConstant(None)
             if name == "extend" and arguments:
                 self.extend(receiver, [Unknown(source_of(node.args[0]))])
-                return Constant(None)
+                return LaunchConstant(None)
             if name == "insert" and len(arguments) == 2:
-                place = first.value if isinstance(first, Constant) and isinstance(first.value, int) else 0
+                place = first.value if isinstance(first, LaunchConstant) and isinstance(first.value, int) else 0
                 receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
-                return Constant(None)
+                return LaunchConstant(None)
             if name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
-                return Constant(None)
+                return LaunchConstant(None)
             if name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
         elif isinstance(receiver, Pairs):
@@ -734,24 +742,24 @@ class Walker:
             if name == "update" and isinstance(first, Pairs):
                 for key, value in first.items:
                     receiver.set(key, self.guarded(value, receiver.depth))
-                return Constant(None)
+                return LaunchConstant(None)
             if name in ("get", "pop") and arguments:
                 found = receiver.get(first)
                 if found is not None:
                     return found if not isinstance(found, Guarded) else Unknown(source_of(node))
-                if first is not None and all(isinstance(key, Text) for key, _ in receiver.items):
-                    return arguments[1] if len(arguments) > 1 else Constant(None)
+                if first is not None and all(isinstance(key, TextValue) for key, _ in receiver.items):
+                    return arguments[1] if len(arguments) > 1 else LaunchConstant(None)
             if name == "copy":
                 return Pairs(list(receiver.items), depth)
         elif isinstance(receiver, Context):
             if name in ("get", "perform_substitution", "__getitem__") and first is not None:
                 if not receiver.configurations:
-                    return Text(self.text(first, node))
+                    return TextValue(self.text(first, node))
                 rest = [self.text(a, node) for a in arguments[1:]]
-                return Text((named("arg", self.text(first, node), *rest),))
-        elif isinstance(receiver, Asked) and name == "evaluate":
-            return Text(all_of(receiver.conditions))
-        elif isinstance(receiver, (Text, Either)):
+                return TextValue((named("arg", self.text(first, node), *rest),))
+        elif isinstance(receiver, ConditionValue) and name == "evaluate":
+            return TextValue(all_of(receiver.conditions))
+        elif isinstance(receiver, (TextValue, Either)):
             return self.text_method(receiver, name, arguments, keywords, node)
         return Unknown(source_of(node))
 
@@ -761,19 +769,19 @@ class Walker:
         value = self.text(receiver, node)
         if name in ("perform", "resolve", "as_posix", "absolute", "expanduser", "read", "read_text"):
             if name == "read_text":
-                value = (Piece("content", "", (value,)),)
-            return Text(value)
+                value = (ValuePart("content", "", (value,)),)
+            return TextValue(value)
         if name == "joinpath":
-            return Text((Piece("join", "", (value, *(self.text(a, node) for a in arguments))),))
+            return TextValue((ValuePart("join", "", (value, *(self.text(a, node) for a in arguments))),))
         if name == "join" and len(arguments) == 1 and isinstance(arguments[0], Items):
             parts: list[Value] = []
             for item in arguments[0].items:
                 parts += (*([value] if parts else ()), self.text(item, node))
-            return Text(together(parts))
+            return TextValue(together(parts))
         if name == "format":
             return self.format(value, arguments, keywords, node)
         if name in STRING_METHODS:
-            return Text((Piece("method", name, (value, *(self.text(a, node) for a in arguments))),))
+            return TextValue((ValuePart("method", name, (value, *(self.text(a, node) for a in arguments))),))
         return Unknown(source_of(node))
 
     def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
@@ -801,7 +809,7 @@ class Walker:
                 values.append(self.text(given, node))
         except ValueError:
             return Unknown(source_of(node))
-        return Text(together(values))
+        return TextValue(together(values))
 
     # Values as facts
 
@@ -814,22 +822,22 @@ class Walker:
     def text(self, value: Any, node: ast.AST) -> Value:
         """A value as text; node: what to show where it is not known."""
         self.spend(1)
-        if isinstance(value, Text):
+        if isinstance(value, TextValue):
             self.spend(len(value.value) + len(value.value[0].text) // 100 if value.value else 1)
             return value.value
-        if isinstance(value, Constant):
+        if isinstance(value, LaunchConstant):
             return literal("" if value.value is None else str(value.value))
-        if isinstance(value, (FilledFile, Typed)):
+        if isinstance(value, (FilledFile, TypedValue)):
             return value.value if isinstance(value, FilledFile) else self.text(value.value, node)
         if isinstance(value, Either):
-            return (Piece("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
+            return (ValuePart("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
         if isinstance(value, Items) and not value.is_launch:
             return together([self.text(item, node) for item in value.items])
         if isinstance(value, Unknown):
             return (other(value.source),)
         return (other(source_of(node)),)
 
-    def actions(self, value: Any, line: int, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
+    def actions(self, value: Any, line: int, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
         """The actions that a value given for actions holds."""
         self.spend(1)
         if isinstance(value, Action):
@@ -842,9 +850,9 @@ class Walker:
         elif isinstance(value, Guarded):
             yield from self.actions(value.value, line, (*extra, *value.conditions))
         elif isinstance(value, Either):
-            yield from self.actions(value.yes, line, (*extra, Condition("if", value.condition, line)))
-            yield from self.actions(value.no, line, (*extra, Condition("unless", value.condition, line)))
-        elif isinstance(value, Constant) or (isinstance(value, Unknown) and value.source.startswith(_NO_ACTION)):
+            yield from self.actions(value.yes, line, (*extra, ActionCondition("if", value.condition, line)))
+            yield from self.actions(value.no, line, (*extra, ActionCondition("unless", value.condition, line)))
+        elif isinstance(value, LaunchConstant) or (isinstance(value, Unknown) and value.source.startswith(_NO_ACTION)):
             return
         elif isinstance(value, Pairs):
             for _, item in value.items:

@@ -7,21 +7,21 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from ..python.text import ARITHMETIC, COMPARISONS
-from .actions import Condition, Piece, Value, literal
+from .actions import ActionCondition, Value, ValuePart, literal
 
 
 class TooMuch(Exception):
     """More than a launch file ever does; the message says what."""
 
 
-class Text(NamedTuple):
+class TextValue(NamedTuple):
     """Text, or a substitution. is_str: Python holds a str, so that it can be compared; a substitution is an object."""
 
     value: Value
     is_str: bool = True
 
 
-class Constant(NamedTuple):
+class LaunchConstant(NamedTuple):
     """A number, bool or None."""
 
     value: Any
@@ -33,10 +33,10 @@ class Unknown(NamedTuple):
     source: str
 
 
-class Asked(NamedTuple):
+class ConditionValue(NamedTuple):
     """An IfCondition and the like."""
 
-    conditions: tuple[Condition, ...]
+    conditions: tuple[ActionCondition, ...]
 
 
 class FilledFile(NamedTuple):
@@ -52,7 +52,7 @@ class YamlContent(NamedTuple):
     keys: tuple[Value, ...] = ()
 
 
-class Typed(NamedTuple):
+class TypedValue(NamedTuple):
     """A ParameterValue: its value and the name of the type it is to have."""
 
     value: Any
@@ -63,7 +63,7 @@ class Guarded(NamedTuple):
     """A value that is only there under conditions."""
 
     value: Any
-    conditions: tuple[Condition, ...]
+    conditions: tuple[ActionCondition, ...]
 
 
 class Either(NamedTuple):
@@ -74,7 +74,7 @@ class Either(NamedTuple):
     no: Any
 
 
-class Module(NamedTuple):
+class LaunchModule(NamedTuple):
     """An imported module or name, as a dotted path."""
 
     path: str
@@ -87,11 +87,11 @@ class Method(NamedTuple):
     name: str
 
 
-class Function(NamedTuple):
+class LaunchFunction(NamedTuple):
     """A function of the file, with the names it sees and, for a method, its object."""
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
-    scope: Scope
+    scope: LaunchScope
     self: Any = None
 
 
@@ -130,12 +130,12 @@ class Pairs:
         self.items.append((key, value))
 
 
-class Class:
+class LaunchClass:
     """A class of the file."""
 
     __slots__ = ("methods", "name", "scope")
 
-    def __init__(self, name: str, scope: Scope):
+    def __init__(self, name: str, scope: LaunchScope):
         self.name = name
         self.scope = scope
         self.methods: dict[str, Any] = {}
@@ -146,22 +146,22 @@ class Object:
 
     __slots__ = ("attributes", "type")
 
-    def __init__(self, type_: Class):
+    def __init__(self, type_: LaunchClass):
         self.type = type_
         self.attributes: dict[str, Any] = {}
 
 
-class Scope:
+class LaunchScope:
     """Names and what they stand for."""
 
     __slots__ = ("names", "parent")
 
-    def __init__(self, parent: Scope | None):
+    def __init__(self, parent: LaunchScope | None):
         self.parent = parent
         self.names: dict[str, Any] = {}
 
     def look(self, name: str) -> Any:
-        scope: Scope | None = self
+        scope: LaunchScope | None = self
         while scope is not None:
             if name in scope.names:
                 return scope.names[name]
@@ -175,13 +175,13 @@ class Context(NamedTuple):
     configurations: bool = False
 
 
-def all_of(conditions: Sequence[Condition]) -> Value:
+def all_of(conditions: Sequence[ActionCondition]) -> Value:
     """Conditions as one value that is true when they all hold."""
-    values = [c.value if c.kind != "unless" else (Piece("not", "", (c.value,)),) for c in conditions]
-    return values[0] if len(values) == 1 else (Piece("and", "", tuple(values)),)
+    values = [c.value if c.kind != "unless" else (ValuePart("not", "", (c.value,)),) for c in conditions]
+    return values[0] if len(values) == 1 else (ValuePart("and", "", tuple(values)),)
 
 
-def guarded_by(value: Any, conditions: tuple[Condition, ...]) -> Any:
+def guarded_by(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
     """A value under conditions, itself where there are none."""
     if not conditions:
         return value
@@ -192,7 +192,7 @@ def guarded_by(value: Any, conditions: tuple[Condition, ...]) -> Any:
 
 def place_in(holder: Items, key: Any) -> int | None:
     """The place in a list that an index means, None when it is not known to be there."""
-    if not isinstance(key, Constant) or not isinstance(key.value, int):
+    if not isinstance(key, LaunchConstant) or not isinstance(key.value, int):
         return None
     return key.value if -len(holder.items) <= key.value < len(holder.items) else None
 
@@ -215,14 +215,14 @@ def calculated(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
         value = calculate(left, right)
     except (ArithmeticError, TypeError, ValueError):
         return Unknown(source_of(node))
-    return Constant(value) if abs(value) < 2**60 else Unknown(source_of(node))
+    return LaunchConstant(value) if abs(value) < 2**60 else Unknown(source_of(node))
 
 
 def folder_of(value: Value) -> Value:
     """The folder that a path lies in."""
-    if value == (Piece("filename"),):
-        return (Piece("dirname"),)
-    return (Piece("join", "", (value, literal(".."))),)
+    if value == (ValuePart("filename"),):
+        return (ValuePart("dirname"),)
+    return (ValuePart("join", "", (value, literal(".."))),)
 
 
 NOTHING = Unknown("nothing()")

@@ -15,18 +15,18 @@ from ....edges.dispatch import node_methods
 from .text import dotted
 
 
-class Text(str):
+class TextConstant(str):
     """A string of the file, with the line it stands on."""
 
     line: int
 
-    def __new__(cls, text: str, line: int) -> Text:
+    def __new__(cls, text: str, line: int) -> TextConstant:
         made = super().__new__(cls, text)
         made.line = line
         return made
 
 
-class Unresolved:
+class UnknownValue:
     """A value that only running the file would give."""
 
     __slots__ = ("_source",)
@@ -49,7 +49,7 @@ class PackagePath(NamedTuple):
     assumed: bool = False
 
 
-def put_together(parts: Iterable[Any], line: int = 1) -> Text | PackagePath | None:
+def put_together(parts: Iterable[Any], line: int = 1) -> TextConstant | PackagePath | None:
     """Texts and at most one package folder, put together; None for anything else. `/` between parts of a path is never
     doubled."""
     base: PackagePath | None = None
@@ -67,7 +67,7 @@ def put_together(parts: Iterable[Any], line: int = 1) -> Text | PackagePath | No
             return None
         else:
             text += part
-    return Text(text, line) if base is None else PackagePath(base.package, text.lstrip("/"), base.assumed)
+    return TextConstant(text, line) if base is None else PackagePath(base.package, text.lstrip("/"), base.assumed)
 
 
 def path_of(parts: Iterable[Any], line: int) -> Any:
@@ -97,7 +97,7 @@ class Constants:
             self.names[target.id] = value
         elif isinstance(target, (ast.Tuple, ast.List)):
             for element in target.elts:
-                self.assign(element, Unresolved("a tuple's part"))
+                self.assign(element, UnknownValue("a tuple's part"))
         elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
             owner, key = self.names.get(target.value.id), self.value(target.slice)
             if isinstance(owner, dict) and isinstance(key, str):
@@ -112,7 +112,7 @@ class Constants:
                 found[keyword.arg] = value
             elif isinstance(value, dict):
                 found.update(value)
-            elif isinstance(value, Unresolved):
+            elif isinstance(value, UnknownValue):
                 self.unresolved.append(f"arguments are {value.what}")
         return found
 
@@ -120,10 +120,10 @@ class Constants:
         """A str (with its line), PackagePath, list, dict, or Unresolved; a file pattern is a str."""
         evaluate = self.evaluators.get(node.__class__)
         found = evaluate(self, node) if evaluate is not None else None
-        return Unresolved(node) if found is None else found
+        return UnknownValue(node) if found is None else found
 
     def value_Constant(self, node: ast.Constant) -> Any:
-        return Text(node.value, node.lineno) if isinstance(node.value, str) else node.value
+        return TextConstant(node.value, node.lineno) if isinstance(node.value, str) else node.value
 
     def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
         return [self.value(element) for element in node.elts]
@@ -183,7 +183,7 @@ class Constants:
                 return path_of((a for a in arguments if a), call.lineno)
         elif (name in GLOBS or last == "glob") and len(arguments) >= 1:
             if isinstance(arguments[0], str):
-                return [Text(arguments[0], call.lineno)]
+                return [TextConstant(arguments[0], call.lineno)]
         elif name in SAME and len(arguments) == 1:
             return arguments[0]
         elif last == "format" and isinstance(call.func, ast.Attribute):
@@ -195,9 +195,9 @@ class Constants:
         return None
 
 
-def _filled(pieces: list[str], values: list[str], node: ast.expr) -> Text:
+def _filled(pieces: list[str], values: list[str], node: ast.expr) -> TextConstant:
     """Pieces of a pattern with values in between."""
-    return Text(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
+    return TextConstant(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
 
 
 Constants.evaluators = node_methods(Constants, "value_")

@@ -7,12 +7,23 @@ import re
 from collections.abc import Iterator
 
 from ....edges.dispatch import node_methods
-from ..flow import Access, Alias, Assignment, Expr, FlowFile
+from ..flow import Access, Alias, Assignment, FlowExpr, FlowFile
 from ..place import Problem
 from .flow_body import Body, ClassBody
-from .flow_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
+from .flow_conditions import (
+    EXITS,
+    JUMPS,
+    STAYS,
+    AskedCondition,
+    HoldingCondition,
+    Leaving,
+    breaks,
+    either,
+    test,
+    within,
+)
 from .flow_expressions import ANY, Expressions
-from .source import Source, read
+from .source import PythonSource, read
 
 _OPERATORS = {
     ast.Add: "+=", ast.Sub: "-=", ast.Mult: "*=", ast.Div: "/=", ast.FloorDiv: "//=", ast.Mod: "%=", ast.Pow: "**=",
@@ -29,13 +40,13 @@ def extract(data: bytes) -> FlowFile:
     return flow(read(data))
 
 
-def flow(source: Source) -> FlowFile:
+def flow(source: PythonSource) -> FlowFile:
     """The facts of a source that is already parsed. Never raises."""
     lines = source.parsed.count("\n") + 1
     if source.tree is None:
         return FlowFile("python", unread=((1, lines),), problems=source.problems)
     raised = {problem.line for problem in source.python2_only if problem.message.startswith("`raise")}
-    reader = Statements(source.parsed, raised)
+    reader = PythonStatements(source.parsed, raised)
     reader.read(source.tree, lines)
     bodies = sorted(reader.bodies, key=lambda body: (body.name != "", body.line))
     return FlowFile(
@@ -49,7 +60,7 @@ def flow(source: Source) -> FlowFile:
     )
 
 
-class Statements(Expressions):
+class PythonStatements(Expressions):
     """The reader of statements. raised: lines whose Python 2 `raise E, "..."` was rewritten into a plain expression."""
 
     def __init__(self, text: str, raised: set[int]) -> None:
@@ -88,7 +99,7 @@ class Statements(Expressions):
     def block(self, statements: list[ast.stmt]) -> Leaving:
         """Reads statements; gives how control leaves them."""
         saved = self.guard
-        left: list[Condition] | None = None
+        left: list[HoldingCondition] | None = None
         jumped: ast.stmt | None = None
         behind = False
         readers = _STATEMENTS
@@ -118,7 +129,7 @@ class Statements(Expressions):
         word = "exit" if node.__class__ is ast.Expr else node.__class__.__name__.lower()
         self.push("never", f"after {word}", node.lineno, early=True)
 
-    def test(self, node: ast.expr) -> Test:
+    def test(self, node: ast.expr) -> AskedCondition:
         operand = ""
         if node.__class__ is ast.UnaryOp and node.op.__class__ is ast.Not:  # type: ignore[attr-defined]
             operand = self.source(node.operand)  # type: ignore[attr-defined]
@@ -134,7 +145,7 @@ class Statements(Expressions):
     def read_If(self, node: ast.If) -> Leaving:
         """An if with its chain of elifs."""
         saved = self.guard
-        branches: list[tuple[Test, Leaving]] = []
+        branches: list[tuple[AskedCondition, Leaving]] = []
         last: Leaving = STAYS
         while True:
             self.visit(node.test)
@@ -164,7 +175,7 @@ class Statements(Expressions):
         if node.orelse:
             left = self.under("unless", text, node.lineno, node.orelse)
         if broken:
-            return (Condition("if", "break", node.lineno),) if left is None else STAYS
+            return (HoldingCondition("if", "break", node.lineno),) if left is None else STAYS
         return JUMPS if endless else left
 
     def read_For(self, node: ast.For) -> Leaving:
@@ -177,7 +188,7 @@ class Statements(Expressions):
         if not breaks(node.body):
             return self.block(node.orelse)
         if self.under("unless", "break", node.lineno, node.orelse) is None:
-            return (Condition("if", "break", node.lineno),)
+            return (HoldingCondition("if", "break", node.lineno),)
         return STAYS
 
     read_AsyncFor = read_For
@@ -209,9 +220,9 @@ class Statements(Expressions):
         if left is None:
             if not going_on:
                 return JUMPS
-            return (Condition("catch", ", ".join(what for what, _ in going_on), going_on[0][1]), *last)
+            return (HoldingCondition("catch", ", ".join(what for what, _ in going_on), going_on[0][1]), *last)
         jumping = tuple(
-            Condition("unless", f"except {what}", line) for what, line, leaving in caught if leaving is None
+            HoldingCondition("unless", f"except {what}", line) for what, line, leaving in caught if leaving is None
         )
         return (*jumping, *last) if going_on else (*left, *jumping, *last)
 
@@ -244,7 +255,7 @@ class Statements(Expressions):
         asking: list[tuple[list[str], str]] = []
         jumping: list[str] = []
         staying: list[tuple[list[str], str]] = []
-        conditions: list[Condition] = []
+        conditions: list[HoldingCondition] = []
         other: Leaving = STAYS
         for case in node.cases:
             saved, line = self.guard, case.pattern.lineno
@@ -270,7 +281,7 @@ class Statements(Expressions):
             text = " and ".join(entered)
             if leaving is None:
                 if case.guard is not None:
-                    conditions.append(Condition("unless", text, line))
+                    conditions.append(HoldingCondition("unless", text, line))
                 elif values:
                     jumping += values
                 else:
@@ -291,12 +302,12 @@ class Statements(Expressions):
                 values = [value for values, _ in staying for value in values]
                 text = f"{head} == {' or '.join(values)}"
                 opposite = " and ".join(f"{head} != {value}" for value in values)
-                return (*conditions, Condition("case", text, node.lineno, opposite))
-            return (*conditions, Condition("if", " or ".join(text for _, text in staying), node.lineno))
+                return (*conditions, HoldingCondition("case", text, node.lineno, opposite))
+            return (*conditions, HoldingCondition("if", " or ".join(text for _, text in staying), node.lineno))
         if jumping:
             text = f"{head} other than {', '.join(jumping)}"
             opposite = " or ".join(f"{head} == {value}" for value in jumping)
-            conditions.append(Condition("case", text, node.lineno, f"({opposite})"))
+            conditions.append(HoldingCondition("case", text, node.lineno, f"({opposite})"))
         return tuple(conditions)
 
     def pattern(self, node) -> list[str]:
@@ -309,12 +320,12 @@ class Statements(Expressions):
             return [text for part in parts for text in part] if all(parts) else []
         return [self.source(node)]
 
-    def captured(self, pattern, subject: Expr, line: int) -> None:
+    def captured(self, pattern, subject: FlowExpr, line: int) -> None:
         """The names that a pattern binds."""
         for node in ast.walk(pattern):
             name = getattr(node, "name", None) or getattr(node, "rest", None)
             if name and isinstance(name, str):
-                value = subject if node is pattern else Expr("index", "", (subject, ANY))
+                value = subject if node is pattern else FlowExpr("index", "", (subject, ANY))
                 self.bind(ast.Name(name, ast.Store()), value, line)
 
     # Jumps
@@ -345,7 +356,7 @@ class Statements(Expressions):
         self.visit(node.test)
         if node.msg is not None:
             self.visit(node.msg)
-        return (Condition("if", self.source(node.test), node.lineno),)
+        return (HoldingCondition("if", self.source(node.test), node.lineno),)
 
     # Plain statements
 
@@ -374,12 +385,14 @@ class Statements(Expressions):
         """Whether a target is a variable of the function itself."""
         return target.__class__ is ast.Name and not self.in_class and target.id not in self.body.outside  # type: ignore[attr-defined]
 
-    def unpacked(self, target, value: ast.expr) -> Expr:
+    def unpacked(self, target, value: ast.expr) -> FlowExpr:
         """The value of `a, b = ...`, in which each part knows what it is kept in."""
         parts = target.elts
         if value.__class__ in (ast.Tuple, ast.List) and len(value.elts) == len(parts):  # type: ignore[attr-defined]
             pairs = zip(parts, value.elts)  # type: ignore[attr-defined] # noqa: B905
-            return Expr("list", "", tuple(self.value(each, "escape", target=self.spelt(part)) for part, each in pairs))
+            return FlowExpr(
+                "list", "", tuple(self.value(each, "escape", target=self.spelt(part)) for part, each in pairs)
+            )
         return self.value(value, "escape")
 
     def read_AnnAssign(self, node: ast.AnnAssign) -> Leaving:
@@ -521,7 +534,7 @@ class Statements(Expressions):
         self.guard, self.in_class, self.own = saved, in_class, own
         return STAYS
 
-    def add_assignment(self, target: str, value: Expr, line: int, operator: str) -> None:
+    def add_assignment(self, target: str, value: FlowExpr, line: int, operator: str) -> None:
         self.assignments.append(Assignment(target, value, line, self.guard, "", operator))
 
 
@@ -540,4 +553,4 @@ def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.A
 
 
 _SWALLOWS = re.compile(r"(?:[\w.]+\.)?(?:suppress|raises|assertRaises\w*)\(")
-_STATEMENTS = node_methods(Statements, "read_")
+_STATEMENTS = node_methods(PythonStatements, "read_")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from ..flow import Access, Assignment, Call, Class, Expr, Function, Guard, Member, Parameter
+from ..flow import Access, Assignment, DataMember, FlowCall, FlowClass, FlowExpr, FlowFunction, FlowParameter, Guard
 
 
 class ClassBody:
@@ -18,17 +18,17 @@ class ClassBody:
         self.end = node.end_lineno or node.lineno
         self.methods: list[str] = []
         self.callbacks: set[str] = set()
-        self.members: dict[str, Member] = {}
+        self.members: dict[str, DataMember] = {}
 
-    def member(self, name: str, type: str, line: int, value: Expr | None) -> None:
+    def member(self, name: str, type: str, line: int, value: FlowExpr | None) -> None:
         """Keeps the first mention of a member that tells its type, else the first."""
         known = self.members.get(name)
         if known is None or (type and not known.type):
-            self.members[name] = Member(name, type, line, value)
+            self.members[name] = DataMember(name, type, line, value)
 
-    def finished(self) -> Class:
+    def finished(self) -> FlowClass:
         members = tuple(sorted(self.members.values(), key=lambda member: member.line))
-        return Class(self.name, self.bases, members, tuple(self.methods), self.line, self.end)
+        return FlowClass(self.name, self.bases, members, tuple(self.methods), self.line, self.end)
 
 
 class Body:
@@ -50,7 +50,7 @@ class Body:
         self.made = -1
         self.is_class = False
         self.this = ""
-        self.parameters: tuple[Parameter, ...] = ()
+        self.parameters: tuple[FlowParameter, ...] = ()
         self.decorators: tuple[str, ...] = ()
         self.returns = ""
         self.locals: set[str] = set()
@@ -59,7 +59,7 @@ class Body:
         self.functions: set[str] = set()
         self.captured: set[str] = set()
         self.guards: list[Guard] = []
-        self.calls: list[Call] = []
+        self.calls: list[FlowCall] = []
         self.assignments: list[Assignment] = []
         self.accesses: list[Access] = []
 
@@ -85,8 +85,8 @@ class Body:
         """False for the body of a class that does nothing but define."""
         return not self.is_class or bool(self.calls or self.assignments or self.guards)
 
-    def finished(self) -> Function:
-        return Function(
+    def finished(self) -> FlowFunction:
+        return FlowFunction(
             self.name,
             self.owner,
             self.parameters,

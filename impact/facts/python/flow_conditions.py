@@ -6,7 +6,7 @@ import ast
 from typing import NamedTuple
 
 
-class Condition(NamedTuple):
+class HoldingCondition(NamedTuple):
     """A condition that holds behind a statement: kind, text and line of the Guard it becomes. opposite: the text of
     when it does not hold, to stand beside `and`, where kind and text do not give it."""
 
@@ -17,8 +17,8 @@ class Condition(NamedTuple):
 
 
 # How control leaves statements: not at all, or at their end under these conditions.
-Leaving = tuple[Condition, ...] | None
-STAYS: tuple[Condition, ...] = ()
+Leaving = tuple[HoldingCondition, ...] | None
+STAYS: tuple[HoldingCondition, ...] = ()
 JUMPS = None
 
 # Calls that never return.
@@ -27,7 +27,7 @@ LONGEST_COMPOSED = 1000
 _LOOSE = (ast.IfExp, ast.Lambda, ast.NamedExpr, ast.Yield, ast.YieldFrom)
 
 
-class Test(NamedTuple):
+class AskedCondition(NamedTuple):
     """A condition that was asked, as text that can stand beside `and`, `or` and behind `not`."""
 
     text: str
@@ -36,43 +36,43 @@ class Test(NamedTuple):
     negation: str
 
 
-def test(node: ast.expr, text: str, operand: str) -> Test:
+def test(node: ast.expr, text: str, operand: str) -> AskedCondition:
     """The condition of an if. operand: the source of what it negates, empty for none."""
     cls = node.__class__
     loose = cls in _LOOSE or (cls is ast.BoolOp and node.op.__class__ is ast.Or)  # type: ignore[attr-defined]
     conjunct = f"({text})" if loose else text
     if operand:
         inner = node.operand.__class__  # type: ignore[attr-defined]
-        return Test(text, node.lineno, text, f"({operand})" if inner in (*_LOOSE, ast.BoolOp) else operand)
+        return AskedCondition(text, node.lineno, text, f"({operand})" if inner in (*_LOOSE, ast.BoolOp) else operand)
     simple = cls in (ast.Name, ast.Attribute, ast.Call, ast.Subscript)
-    return Test(text, node.lineno, conjunct, f"not {text}" if simple else f"not ({text})")
+    return AskedCondition(text, node.lineno, conjunct, f"not {text}" if simple else f"not ({text})")
 
 
-def either(asked: Test, yes: Leaving, no: Leaving) -> Leaving:
+def either(asked: AskedCondition, yes: Leaving, no: Leaving) -> Leaving:
     """How control leaves an if, from how it leaves its two branches."""
     if yes is None:
-        return JUMPS if no is None else (Condition("unless", asked.text, asked.line), *no)
+        return JUMPS if no is None else (HoldingCondition("unless", asked.text, asked.line), *no)
     if no is None:
-        return (Condition("if", asked.text, asked.line), *yes)
+        return (HoldingCondition("if", asked.text, asked.line), *yes)
     if not yes and not no:
         return STAYS
     if not yes and len(no) == 1 and no[0].kind == "if" and len(asked.text) + len(no[0].text) < LONGEST_COMPOSED:
         texts = (f"({text})" if " else " in text else text for text in (asked.text, no[0].text))
-        return (Condition("if", " or ".join(texts), asked.line),)
+        return (HoldingCondition("if", " or ".join(texts), asked.line),)
     return (*within(asked.conjunct, yes), *within(asked.negation, no))
 
 
-def within(head: str, leaving: tuple[Condition, ...]) -> tuple[Condition, ...]:
+def within(head: str, leaving: tuple[HoldingCondition, ...]) -> tuple[HoldingCondition, ...]:
     """What holds behind a branch that is entered when `head` holds and is left at its end under conditions."""
-    result: list[Condition] = []
+    result: list[HoldingCondition] = []
     for condition in leaving:
         tail = _opposite(condition)
         if tail and len(head) + len(tail) < LONGEST_COMPOSED:
-            result.append(Condition("unless", f"{head} and {tail}" if head else tail, condition.line))
+            result.append(HoldingCondition("unless", f"{head} and {tail}" if head else tail, condition.line))
     return tuple(result)
 
 
-def _opposite(condition: Condition) -> str:
+def _opposite(condition: HoldingCondition) -> str:
     """The text of when a condition does not hold, beside an `and`; empty when that has no words."""
     if condition.opposite or condition.text.startswith("except"):
         return condition.opposite

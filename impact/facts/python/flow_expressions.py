@@ -13,13 +13,13 @@ import ast
 from itertools import pairwise
 
 from ....edges.dispatch import node_methods
-from ..flow import Access, Assignment, Call, Expr, Guard, Member, Parameter
+from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import Text, child_fields, format_pieces, percent_pieces, printable
+from .text import SourceText, child_fields, format_pieces, percent_pieces, printable
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
-_PLACES = tuple(Expr("number", str(number)) for number in range(16))
+_PLACES = tuple(FlowExpr("number", str(number)) for number in range(16))
 _PARTIAL = frozenset(("partial", "functools.partial"))
 # Builtins that keep nothing of what they are given.
 _READING = frozenset(
@@ -33,11 +33,11 @@ _KEEPING = {"append": 0, "add": 0, "appendleft": 0, "insert": 1, "setdefault": 1
 _CHILDREN = child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
 _PATHS = (ast.Name, ast.Attribute, ast.Subscript)
 LONGEST_OTHER = 120
-ANY = Expr("other")
-_NUMBERS = {None: Expr("number", "None"), True: Expr("number", "True"), False: Expr("number", "False")}
+ANY = FlowExpr("other")
+_NUMBERS = {None: FlowExpr("number", "None"), True: FlowExpr("number", "True"), False: FlowExpr("number", "False")}
 
 
-class Expressions(Text):
+class Expressions(SourceText):
     """The reader of expressions, of which it visits some and makes values of others. It reads for one body at a time,
     into whose lists it writes."""
 
@@ -46,7 +46,7 @@ class Expressions(Text):
     this: str
     locals: set[str]
     guards: list[Guard]
-    calls: list[Call]
+    calls: list[FlowCall]
     assignments: list[Assignment]
     accesses: list[Access]
 
@@ -56,7 +56,7 @@ class Expressions(Text):
         self.class_bodies: dict[str, ClassBody] = {}
         # Names that a class's own body knows without its object.
         self.own: set[str] = set()
-        self.constants: list[Member] = []
+        self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
         self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
         # Whether names are bound in the body of a class.
@@ -109,22 +109,22 @@ class Expressions(Text):
 
     # Plain values
 
-    def member(self, path: str, name: str) -> Expr:
+    def member(self, path: str, name: str) -> FlowExpr:
         cls = self.body.cls
-        return Expr("function" if cls is not None and name in cls.callbacks else "name", path)
+        return FlowExpr("function" if cls is not None and name in cls.callbacks else "name", path)
 
-    def other(self, node) -> Expr:
-        return Expr("other", self.source(node)[:LONGEST_OTHER])
+    def other(self, node) -> FlowExpr:
+        return FlowExpr("other", self.source(node)[:LONGEST_OTHER])
 
-    def constant(self, node: ast.Constant) -> Expr:
+    def constant(self, node: ast.Constant) -> FlowExpr:
         value = node.value
         cls = value.__class__
         if cls is str:
-            return Expr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
+            return FlowExpr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
         if value is None or cls is bool:
             return _NUMBERS[value]  # type: ignore[index]
         if cls is int or cls is float or cls is complex:
-            return Expr("number", self.source(node))
+            return FlowExpr("number", self.source(node))
         return self.other(node)
 
     def annotation(self, node) -> str:
@@ -252,7 +252,7 @@ class Expressions(Text):
 
     # Values
 
-    def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> Expr:
+    def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> FlowExpr:
         """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
         in, `return` for what the function returns."""
         cls = node.__class__
@@ -261,23 +261,23 @@ class Expressions(Text):
         if cls is ast.Name:
             name = node.id
             if name == self.this:
-                return Expr("name", "this")
+                return FlowExpr("name", "this")
             if name in self.locals or self.sees(name):
                 self.accesses.append(Access(name, use, node.lineno, self.guard, to, position, keyword))
-                return Expr("name", name)
+                return FlowExpr("name", name)
             if name in self.own:
                 return self.member("this." + name, name)
-            return Expr("function" if self.is_function(name) else "name", name)
+            return FlowExpr("function" if self.is_function(name) else "name", name)
         if cls is ast.Attribute:
             path, local = self.reach(node)
             if local:
                 self.accesses.append(Access(path, use, node.lineno, self.guard, to, position, keyword))
-                return Expr("name", path)
+                return FlowExpr("name", path)
             head, _, name = path.rpartition(".")
             if head == "this":
                 return self.member(path, name)
             known = self.class_bodies.get(head)
-            return Expr("function" if known is not None and name in known.callbacks else "name", path)
+            return FlowExpr("function" if known is not None and name in known.callbacks else "name", path)
         if cls is ast.Call:
             return self.called(node, target)
         maker = _VALUES.get(cls)
@@ -286,7 +286,9 @@ class Expressions(Text):
         self.visit(node)
         return self.other(node)
 
-    def value_Subscript(self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Subscript(
+        self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str
+    ) -> FlowExpr:
         mark = len(self.accesses)
         container = self.value(node.value, "read")
         if node.slice.__class__ is ast.Slice:
@@ -304,9 +306,9 @@ class Expressions(Text):
                 if access.path == path:
                     self.accesses[place] = Access(path + suffix, use, access.line, access.guard, to, position, keyword)
                     break
-        return Expr("index", "", (container, index))
+        return FlowExpr("index", "", (container, index))
 
-    def value_IfExp(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_IfExp(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         saved = self.guard
         self.visit(node.test)
         text, line = self.source(node.test), node.test.lineno
@@ -320,13 +322,13 @@ class Expressions(Text):
         self.guard = saved
         if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
             del self.guards[count:]
-        return Expr("choice", "", (Expr("other", text[:LONGEST_OTHER]), true, false))
+        return FlowExpr("choice", "", (FlowExpr("other", text[:LONGEST_OTHER]), true, false))
 
-    def value_BoolOp(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_BoolOp(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         """`a or b` is a choice between a and b; `a and b` one between b and a."""
         saved, count = self.guard, len(self.guards)
         both = node.op.__class__ is ast.And
-        values: list[Expr] = []
+        values: list[FlowExpr] = []
         texts: list[str] = []
         facts = 0
         for operand in node.values:
@@ -343,65 +345,65 @@ class Expressions(Text):
         texts.pop()
         while values:
             first = values.pop()
-            asked = Expr("other", texts.pop()[:LONGEST_OTHER])
-            result = Expr("choice", "", (asked, result, first) if both else (asked, first, result))
+            asked = FlowExpr("other", texts.pop()[:LONGEST_OTHER])
+            result = FlowExpr("choice", "", (asked, result, first) if both else (asked, first, result))
         return result
 
-    def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> Expr:
+    def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> FlowExpr:
         operand = node.operand
         if node.op.__class__ is ast.USub and operand.__class__ is ast.Constant:
-            return Expr("number", self.source(node))
+            return FlowExpr("number", self.source(node))
         self.visit(operand)
         return self.other(node)
 
-    def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
         if len(elements) > LONGEST_LIST:
             kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
             for each in elements[LONGEST_LIST:]:
                 self.visit(each)
-            kept.append(Expr("other", f"{len(elements) - LONGEST_LIST} more"))
-            return Expr("list", "", tuple(kept))
-        return Expr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
+            kept.append(FlowExpr("other", f"{len(elements) - LONGEST_LIST} more"))
+            return FlowExpr("list", "", tuple(kept))
+        return FlowExpr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
 
     value_List = value_Tuple
     value_Set = value_Tuple
 
-    def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
-        pairs: list[Expr] = []
+        pairs: list[FlowExpr] = []
         for key, value in zip(node.keys, node.values, strict=False):
             if len(pairs) == LONGEST_LIST:
-                pairs.append(Expr("other", f"{len(node.keys) - LONGEST_LIST} more"))
+                pairs.append(FlowExpr("other", f"{len(node.keys) - LONGEST_LIST} more"))
             if len(pairs) > LONGEST_LIST:
                 self.visit(value)
             elif key is None:
-                pairs.append(Expr("keyword", "**", (self.value(value, "escape", to),)))
+                pairs.append(FlowExpr("keyword", "**", (self.value(value, "escape", to),)))
             else:
                 name = self.value(key, "read")
-                pairs.append(Expr("list", "", (name, self.value(value, "escape", to, target=element))))
-        return Expr("list", "", tuple(pairs))
+                pairs.append(FlowExpr("list", "", (name, self.value(value, "escape", to, target=element))))
+        return FlowExpr("list", "", tuple(pairs))
 
-    def value_Starred(self, node: ast.Starred, use: str, to: str, *_: object) -> Expr:
-        return Expr("keyword", "*", (self.value(node.value, "escape", to),))
+    def value_Starred(self, node: ast.Starred, use: str, to: str, *_: object) -> FlowExpr:
+        return FlowExpr("keyword", "*", (self.value(node.value, "escape", to),))
 
-    def value_Await(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Await(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         return self.value(node.value, use, to, position, keyword, target)
 
-    def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> Expr:
+    def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> FlowExpr:
         target = self.spelt(node.target)
         value = self.value(node.value, "read", target, target=target)
         self.bind(node.target, value, node.lineno)
         return value
 
-    def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> Expr:
+    def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> FlowExpr:
         around = self.body.name
         own = f"lambda@{node.lineno}:{self.column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
         body = self.new_body(name, node, node.args)
         self.waiting.append((body, node.body))
-        return Expr("lambda", name)
+        return FlowExpr("lambda", name)
 
     def new_body(self, name: str, node, arguments: ast.arguments, cls: ClassBody | None = None) -> Body:
         """A function that stands where the reader is, with its parameters; defaults are visited here."""
@@ -418,27 +420,27 @@ class Expressions(Text):
                 body.this = ""
         return body
 
-    def parameters(self, arguments: ast.arguments) -> tuple[Parameter, ...]:
-        found: list[Parameter] = []
+    def parameters(self, arguments: ast.arguments) -> tuple[FlowParameter, ...]:
+        found: list[FlowParameter] = []
         positional = [*arguments.posonlyargs, *arguments.args]
         without = len(positional) - len(arguments.defaults)
         for place, argument in enumerate(positional):
             default = None if place < without else self.value(arguments.defaults[place - without], "escape")
-            found.append(Parameter(argument.arg, self.annotation(argument.annotation), default))
+            found.append(FlowParameter(argument.arg, self.annotation(argument.annotation), default))
         if arguments.vararg is not None:
-            found.append(Parameter("*" + arguments.vararg.arg, self.annotation(arguments.vararg.annotation)))
+            found.append(FlowParameter("*" + arguments.vararg.arg, self.annotation(arguments.vararg.annotation)))
         elif arguments.kwonlyargs:
-            found.append(Parameter("*"))
+            found.append(FlowParameter("*"))
         for argument, given in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=False):
             default = None if given is None else self.value(given, "escape")
-            found.append(Parameter(argument.arg, self.annotation(argument.annotation), default))
+            found.append(FlowParameter(argument.arg, self.annotation(argument.annotation), default))
         if arguments.kwarg is not None:
-            found.append(Parameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
+            found.append(FlowParameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
         return tuple(found)
 
     def value_ListComp(
         self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
-    ) -> Expr:
+    ) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
@@ -453,7 +455,7 @@ class Expressions(Text):
         else:
             each = self.value(node.elt, "escape", to, target=element)
         self.guard, self.in_class = saved, in_class
-        return Expr("other", self.other(node).text, (each,))
+        return FlowExpr("other", self.other(node).text, (each,))
 
     value_SetComp = value_ListComp
     value_GeneratorExp = value_ListComp
@@ -466,12 +468,12 @@ class Expressions(Text):
         value = container if container.kind == "list" and container.text == "each" else None
         if value is not None and target.__class__ in (ast.Tuple, ast.List) and len(target.elts) == len(value.parts):
             for part, each in zip(target.elts, value.parts, strict=False):
-                self.bind(part, Expr("index", "", (each, ANY)) if each is not ANY else ANY, line)
+                self.bind(part, FlowExpr("index", "", (each, ANY)) if each is not ANY else ANY, line)
         else:
-            plain = Expr("list", "", container.parts) if value is not None else container
-            self.bind(target, Expr("index", "", (plain, ANY)), line)
+            plain = FlowExpr("list", "", container.parts) if value is not None else container
+            self.bind(target, FlowExpr("index", "", (plain, ANY)), line)
 
-    def elements(self, node) -> Expr:
+    def elements(self, node) -> FlowExpr:
         """What is walked through by an expression; a list `each` for what goes beside another, as zip does."""
         if node.__class__ is ast.Call and node.func.__class__ is ast.Name and node.func.id not in self.locals:
             name, arguments = node.func.id, node.args
@@ -483,14 +485,14 @@ class Expressions(Text):
                 if name == "enumerate":
                     for argument in arguments[1:]:
                         self.visit(argument)
-                    return Expr("list", "each", (ANY, self.elements(arguments[0])))
+                    return FlowExpr("list", "each", (ANY, self.elements(arguments[0])))
                 if name in ("zip", "izip"):
-                    return Expr("list", "each", tuple(self.elements(argument) for argument in arguments))
+                    return FlowExpr("list", "each", tuple(self.elements(argument) for argument in arguments))
         return self.value(node, "read")
 
     # Binding
 
-    def bind(self, target, value: Expr, line: int, type: str = "", operator: str = "=") -> None:
+    def bind(self, target, value: FlowExpr, line: int, type: str = "", operator: str = "=") -> None:
         """An assignment of a value, already read, to a name, a member, an element or several of them."""
         cls = target.__class__
         if cls is ast.Name:
@@ -503,11 +505,11 @@ class Expressions(Text):
             else:
                 path = name
                 if not body.name:
-                    self.constants.append(Member(name, type, line, value))
+                    self.constants.append(DataMember(name, type, line, value))
                     self.locals.add(name)
                 elif name in body.outside:
                     if body.outside[name] is ast.Global:
-                        self.constants.append(Member(name, type, line, value))
+                        self.constants.append(DataMember(name, type, line, value))
                 else:
                     self.locals.add(name)
             self.assignments.append(Assignment(path, value, line, self.guard, type, operator))
@@ -531,7 +533,7 @@ class Expressions(Text):
                     value = ANY
                 for place, part in enumerate(parts):
                     known = not starred and place < len(_PLACES)
-                    self.bind(part, Expr("index", "", (value, _PLACES[place] if known else ANY)), line)
+                    self.bind(part, FlowExpr("index", "", (value, _PLACES[place] if known else ANY)), line)
         elif cls is ast.Starred:
             self.bind(target.value, value, line)
         else:
@@ -539,7 +541,7 @@ class Expressions(Text):
 
     # Strings and paths that are put together: joins of their pieces
 
-    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         op = node.op.__class__
         if op is ast.Add:
             # Long sums lean to the left.
@@ -550,7 +552,7 @@ class Expressions(Text):
                 left = left.left  # type: ignore[attr-defined]
             operands.append(left)
             operands.reverse()
-            return Expr("join", "+", tuple(self.value(operand, "read") for operand in operands))
+            return FlowExpr("join", "+", tuple(self.value(operand, "read") for operand in operands))
         if op is ast.Mod and node.left.__class__ is ast.Constant and node.left.value.__class__ is str:  # type: ignore[attr-defined]
             return self.percent(node)
         if op is ast.Div:
@@ -562,16 +564,16 @@ class Expressions(Text):
                 or (left.kind, left.text) == ("join", "/")
             ):
                 parts = left.parts if (left.kind, left.text) == ("join", "/") else (left,)
-                return Expr("join", "/", (*parts, right))
+                return FlowExpr("join", "/", (*parts, right))
             return self.other(node)
         self.visit(node.left)
         self.visit(node.right)
         return self.other(node)
 
-    def percent(self, node: ast.BinOp) -> Expr:
+    def percent(self, node: ast.BinOp) -> FlowExpr:
         pieces = percent_pieces(node.left.value)  # type: ignore[attr-defined]
         right = node.right
-        values: dict[int | str, Expr] = {}
+        values: dict[int | str, FlowExpr] = {}
         if right.__class__ is ast.Tuple:
             for place, element in enumerate(right.elts):  # type: ignore[attr-defined]
                 values[place] = self.value(element, "read")
@@ -583,28 +585,30 @@ class Expressions(Text):
             values[0] = self.value(right, "read")
         return self.put_together(node, pieces, values)
 
-    def put_together(self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, Expr]) -> Expr:
+    def put_together(
+        self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, FlowExpr]
+    ) -> FlowExpr:
         """The join of literal pieces and values; other when a value is not told apart."""
         if pieces is None:
             return self.other(node)
-        parts: list[Expr] = []
+        parts: list[FlowExpr] = []
         for piece in pieces:
             if piece.__class__ is str:
-                parts.append(Expr("text", printable(piece)))  # type: ignore[arg-type]
+                parts.append(FlowExpr("text", printable(piece)))  # type: ignore[arg-type]
             elif piece.__class__ is int:
                 if piece not in values:
                     return self.other(node)
                 parts.append(values[piece])  # type: ignore[index]
             else:
                 key = piece[0]  # type: ignore[index]
-                parts.append(values[key] if key in values else Expr("other", printable(key)[:LONGEST_OTHER]))
+                parts.append(values[key] if key in values else FlowExpr("other", printable(key)[:LONGEST_OTHER]))
         if len(parts) == 1 and parts[0].kind == "text":
             return parts[0]
-        return Expr("join", "", tuple(parts))
+        return FlowExpr("join", "", tuple(parts))
 
-    def formatted(self, node: ast.Call) -> Expr:
+    def formatted(self, node: ast.Call) -> FlowExpr:
         """`"...".format(...)`."""
-        values: dict[int | str, Expr] = {}
+        values: dict[int | str, FlowExpr] = {}
         unpacked = False
         for place, argument in enumerate(node.args):
             unpacked = unpacked or argument.__class__ is ast.Starred
@@ -617,7 +621,7 @@ class Expressions(Text):
             return self.other(node)
         return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
 
-    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
+    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> FlowExpr:
         outermost = not self.unplaced and node.lineno != node.end_lineno
         if outermost:
             # Where things stand in a string of several lines, interpreters before 3.12 do not know.
@@ -626,7 +630,7 @@ class Expressions(Text):
                 if hasattr(inner, "lineno"):
                     inner.lineno, inner.end_lineno = node.lineno, node.lineno  # type: ignore[attr-defined]
                     inner.col_offset = inner.end_col_offset = node.col_offset  # type: ignore[attr-defined]
-        parts: list[Expr] = []
+        parts: list[FlowExpr] = []
         for piece in node.values:
             if piece.__class__ is ast.Constant:
                 parts.append(self.constant(piece))  # type: ignore[arg-type]
@@ -640,12 +644,12 @@ class Expressions(Text):
         if outermost:
             self.unplaced = False
         if not parts:
-            return Expr("text", "")
-        return parts[0] if len(parts) == 1 and parts[0].kind == "text" else Expr("join", "", tuple(parts))
+            return FlowExpr("text", "")
+        return parts[0] if len(parts) == 1 and parts[0].kind == "text" else FlowExpr("join", "", tuple(parts))
 
     # Calls
 
-    def called(self, node: ast.Call, target: str = "") -> Expr:
+    def called(self, node: ast.Call, target: str = "") -> FlowExpr:
         """A call as a value."""
         func = node.func
         if (
@@ -657,13 +661,13 @@ class Expressions(Text):
             return self.formatted(node)
         callee, arguments = self.call(node, target)
         if callee in _PARTIAL and arguments:
-            return Expr("bind", "", arguments)
+            return FlowExpr("bind", "", arguments)
         last = callee.rpartition(".")[2].lstrip("_")
         if last[:1].isupper() and not last.isupper():
-            return Expr("make", callee, arguments)
-        return Expr("call", callee, arguments)
+            return FlowExpr("make", callee, arguments)
+        return FlowExpr("call", callee, arguments)
 
-    def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[Expr, ...]]:
+    def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[FlowExpr, ...]]:
         """Records a call, with what it is given and what it is called on; gives its callee and arguments."""
         func = node.func
         cls = func.__class__
@@ -689,7 +693,7 @@ class Expressions(Text):
             callee = name if name != self.this else "this"
         else:
             callee, _ = self.reach(func)
-        arguments: list[Expr] = []
+        arguments: list[FlowExpr] = []
         for place, argument in enumerate(node.args):
             inside = argument.__class__
             if inside is ast.Constant:
@@ -704,20 +708,22 @@ class Expressions(Text):
         for keyword in node.keywords:
             value, name = keyword.value, keyword.arg
             if name is None:
-                arguments.append(Expr("keyword", "**", (self.value(value, "escape", callee),)))
+                arguments.append(FlowExpr("keyword", "**", (self.value(value, "escape", callee),)))
             elif value.__class__ in _PATHS:
-                arguments.append(Expr("keyword", name, (self.value(value, "pass", callee, -1, name),)))
+                arguments.append(FlowExpr("keyword", name, (self.value(value, "pass", callee, -1, name),)))
             else:
-                arguments.append(Expr("keyword", name, (self.value(value, "escape", callee),)))
+                arguments.append(FlowExpr("keyword", name, (self.value(value, "escape", callee),)))
         given = tuple(arguments)
         if callee != "super":
             returned = target == "return"
             column = self.column(line, node.col_offset)
-            self.calls.append(Call(callee, given, line, column, self.guard, "", "" if returned else target, returned))
+            self.calls.append(
+                FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
+            )
         return callee, given
 
 
-def made(value: Expr) -> str:
+def made(value: FlowExpr) -> str:
     """The class that a value is an object of, as written; empty for what is not made here."""
     return value.text if value.kind == "make" else ""
 

@@ -10,9 +10,9 @@ import msgspec
 from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
-from .text import Text, caught_by, child_fields
-from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
-from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
+from .text import SourceText, caught_by, child_fields
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, field_type
+from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -27,7 +27,7 @@ class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
-class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class AttributeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a dotted name whose head is an imported module or name, import aliases resolved
     (`import time as t; t.clock()` gives `time.clock`), per distinct set of conditions. The conditions are those of the
     import and those of the use that tell about the interpreter or the machine, not every `if`. A `try` whose except
@@ -78,27 +78,27 @@ _CHILDREN = child_fields(
 )
 
 
-class Reader(Objects, Text):
+class PythonReader(ObjectUses, SourceText):
     """One walk over a syntax tree, in the order of the source."""
 
     def __init__(self, text: str, original: str) -> None:
-        Objects.__init__(self, text)
-        Text.__init__(self, text)
+        ObjectUses.__init__(self, text)
+        SourceText.__init__(self, text)
         # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
         self.original = original.split("\n") if original != text else []
         self.has_paths = "package://" in text or "$(find" in text
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
-        self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
-        self.assigned: set[tuple[Scope, str]] = set()
-        self.imported_names: list[Attribute] = []
+        self.uses: dict[tuple[PythonScope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
+        self.assigned: set[tuple[PythonScope, str]] = set()
+        self.imported_names: list[AttributeUse] = []
         self.references: dict[Reference, None] = {}
         # What the include around gives.
         self.included: tuple[str, ...] | None = None
         # Functions that look up the package named by one of their own parameters, and all calls by a plain name.
-        self.lookups: dict[tuple[Scope, str], tuple[int, str]] = {}
-        self.calls: list[tuple[Scope, str, ast.Call, bool]] = []
-        self.defining: tuple[Scope, str] | None = None
+        self.lookups: dict[tuple[PythonScope, str], tuple[int, str]] = {}
+        self.calls: list[tuple[PythonScope, str, ast.Call, bool]] = []
+        self.defining: tuple[PythonScope, str] | None = None
         self.needs: tuple[int, int, str] | None = None
         self.python2_only: list[Problem] = []
         self.main = False
@@ -205,12 +205,12 @@ class Reader(Objects, Text):
         elif known[2] and not self.may_not_run:
             self.uses[key] = (*known[:2], False)
 
-    def dotted(self, scope: Scope, text: str) -> Iterator[str]:
+    def dotted(self, scope: PythonScope, text: str) -> Iterator[str]:
         """What a name with parts stands for, import aliases resolved."""
         head, _, rest = text.partition(".")
         return (f"{dotted}.{rest}" for dotted, _ in self.imported(head, scope))
 
-    def attributes(self) -> tuple[Attribute, ...]:
+    def attributes(self) -> tuple[AttributeUse, ...]:
         """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
         own = {dotted for scope, text in self.assigned for dotted in self.dotted(scope, text)}
         found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
@@ -232,7 +232,7 @@ class Reader(Objects, Text):
                 else:
                     found[key] = (*min(place, known[:2]), lazy and known[2])
         return tuple(
-            Attribute(text, line, column, conditions, lazy)
+            AttributeUse(text, line, column, conditions, lazy)
             for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
         )
 
@@ -265,7 +265,7 @@ class Reader(Objects, Text):
             if not node.level:
                 column = self.column(alias.lineno, alias.col_offset)
                 self.imported_names.append(
-                    Attribute(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
+                    AttributeUse(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
 
     # Conditions
@@ -314,7 +314,7 @@ class Reader(Objects, Text):
 
     def visit_ListComp(self, node) -> None:
         outer = self.scope
-        self.scope = Scope(outer, False)
+        self.scope = PythonScope(outer, False)
         self.scope.parameters = outer.parameters
         for generator in node.generators:
             self.visit(generator.iter)
@@ -467,7 +467,7 @@ class Reader(Objects, Text):
             for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
             if argument.annotation is not None and (type_ := self.annotated(argument.annotation))
         ]
-        self.scope = Scope(self.scope, False)
+        self.scope = PythonScope(self.scope, False)
         self.function = True
         self.parameters(arguments)
         self.note_parameters(node)
@@ -501,7 +501,7 @@ class Reader(Objects, Text):
     def visit_Lambda(self, node: ast.Lambda) -> None:
         self.arguments(node.args)
         before = self.scope, self.function, self.lazy
-        self.scope = Scope(self.scope, False)
+        self.scope = PythonScope(self.scope, False)
         self.function = self.lazy = True
         self.parameters(node.args)
         self.visit(node.body)
@@ -517,7 +517,7 @@ class Reader(Objects, Text):
             self.need(12, node, "type parameters")
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
-        self.scope = Scope(self.scope, True)
+        self.scope = PythonScope(self.scope, True)
         self.block(node.body)
         self.inside_class.members |= self.scope.bound
         self.scope, self.inside_class, self.me = before
@@ -814,4 +814,4 @@ def _last_name(node) -> str:
     return getattr(node, "id", None) or getattr(node, "attr", "")
 
 
-_HANDLERS = node_methods(Reader, "visit_")
+_HANDLERS = node_methods(PythonReader, "visit_")

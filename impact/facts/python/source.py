@@ -13,7 +13,7 @@ from ..markup import text_encoding
 from ..place import Problem, Reference
 from ..words import words_of
 from . import python2
-from .reader import TRY, Attribute, Import, Reader
+from .reader import TRY, AttributeUse, Import, PythonReader
 from .uses import FieldUse, PythonUse
 
 
@@ -29,7 +29,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """
 
     imports: tuple[Import, ...]
-    attributes: tuple[Attribute, ...]
+    attributes: tuple[AttributeUse, ...]
     references: tuple[Reference, ...]
     python2_only: tuple[Problem, ...] = ()
     needs: tuple[int, int, str] | None = None
@@ -41,7 +41,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     fields: tuple[FieldUse, ...] = ()
 
 
-class Source(NamedTuple):
+class PythonSource(NamedTuple):
     """A source and its syntax tree. text: decoded, with `\\n` as the end of line. parsed: what the tree was made from:
     the text, or where Python 2 was rewritten the same lines with other words. tree: None for what does not parse.
     python2_only: as in PythonFile, of a text that was refused."""
@@ -119,7 +119,7 @@ def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast
 
 
 @lru_cache(maxsize=1)
-def read(data: bytes) -> Source:
+def read(data: bytes) -> PythonSource:
     """One Python source parsed by this interpreter's own parser, Python 2 as far as it can be rewritten. Never raises.
 
     The last source is remembered for the second look that message flow takes at it. Syntax newer than this interpreter
@@ -127,14 +127,14 @@ def read(data: bytes) -> Source:
     """
     text, problems = _decode(data)
     try:
-        return Source(text, text, _parse(text), (), problems)
+        return PythonSource(text, text, _parse(text), (), problems)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         old, tree, rewritten = _as_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
         if not old:
             line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
             what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
             problems = (*problems, Problem(line, f"not parsed: {what}"))
-        return Source(text, rewritten, tree, old, problems)
+        return PythonSource(text, rewritten, tree, old, problems)
 
 
 def extract(data: bytes) -> PythonFile:
@@ -147,7 +147,7 @@ def extract(data: bytes) -> PythonFile:
     interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
     if tree is not None:
         try:
-            reader = Reader(parsed, text)
+            reader = PythonReader(parsed, text)
             reader.read(tree)
             return PythonFile(
                 imports=tuple(reader.imports),

@@ -18,7 +18,7 @@ from .source import read
 from .text import caught_by, dotted
 
 
-class Parameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class PythonParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter. kind: `positional` (before `/`), `normal`, `keyword` (after `*`), `args` (`*args`) or `kwargs`.
     default: its source, white space and quotes made even; None for a parameter that must be given. annotation: its
     source, empty for none."""
@@ -45,7 +45,7 @@ class Bound(msgspec.Struct, frozen=True, array_like=True, gc=False):
     name: str
     kind: str
     line: int
-    parameters: tuple[Parameter, ...] = ()
+    parameters: tuple[PythonParameter, ...] = ()
     annotation: str = ""
     value: str = ""
     bases: tuple[str, ...] = ()
@@ -462,7 +462,7 @@ _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem) + (
 )
 
 
-def parameters_of(arguments: ast.arguments) -> Iterator[Parameter]:
+def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:
     """Parameters in order, `self` and `cls` among them."""
     positional = [(a, "positional") for a in arguments.posonlyargs] + [(a, "normal") for a in arguments.args]
     missing = len(positional) - len(arguments.defaults)
@@ -477,9 +477,9 @@ def parameters_of(arguments: ast.arguments) -> Iterator[Parameter]:
         yield _parameter(arguments.kwarg, "kwargs", None)
 
 
-def _parameter(argument: ast.arg, kind: str, default: ast.expr | None) -> Parameter:
+def _parameter(argument: ast.arg, kind: str, default: ast.expr | None) -> PythonParameter:
     annotation = _text(argument.annotation) if argument.annotation is not None else ""
-    return Parameter(argument.arg, kind, None if default is None else _text(default), annotation)
+    return PythonParameter(argument.arg, kind, None if default is None else _text(default), annotation)
 
 
 def _flat(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:

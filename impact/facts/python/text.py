@@ -69,7 +69,7 @@ def caught_by(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
     return caught
 
 
-class Text:
+class SourceText:
     """The text that a syntax tree was made from, by lines."""
 
     def __init__(self, text: str) -> None:

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import msgspec
 
 from ..condition import Condition
-from .values import Values
+from .values import PythonValues
 
 
-class Given(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CallArguments(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The arguments of a call. positional: how many. open: `*args` or `**kwargs` gives more."""
 
     positional: int
@@ -44,7 +44,7 @@ class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     how: str
     line: int
     column: int
-    given: Given | None = None
+    given: CallArguments | None = None
     parameters: str = ""
     lazy: bool = False
     alone: bool = True
@@ -75,7 +75,7 @@ class _Class:
 class _Raw(NamedTuple):
     type: str
     member: str
-    given: Given | None
+    given: CallArguments | None
     line: int
     offset: int
     lazy: bool
@@ -99,7 +99,7 @@ _DOTTED = re.compile(r"\.*[A-Za-z_][\w.]*\Z")
 SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
 
 
-class Objects(Values):
+class ObjectUses(PythonValues):
     """What the walk notes of objects and calls; finished by object_uses()."""
 
     def __init__(self, text: str) -> None:
@@ -292,7 +292,7 @@ class Objects(Values):
     def use_field(self, type_: str, name: str, place: tuple[int, int]) -> None:
         self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
 
-    def note(self, type_: str, member: str, given: Given | None, node) -> None:
+    def note(self, type_: str, member: str, given: CallArguments | None, node) -> None:
         if not type_ or (type_[0] != OWN and _standard(type_)) or _is_field(type_):
             return
         conditions = self.use_conditions if given is None else (*self.use_conditions, *self.call_conditions)
@@ -438,10 +438,12 @@ def _standard(name: str) -> bool:
     return name.partition(".")[0] in sys.stdlib_module_names
 
 
-def _given(call: ast.Call) -> Given:
+def _given(call: ast.Call) -> CallArguments:
     positional = [a for a in call.args if a.__class__ is not ast.Starred]
     keywords = tuple(k.arg for k in call.keywords if k.arg is not None)
-    return Given(len(positional), keywords, len(positional) + len(keywords) < len(call.args) + len(call.keywords))
+    return CallArguments(
+        len(positional), keywords, len(positional) + len(keywords) < len(call.args) + len(call.keywords)
+    )
 
 
 def _parameters(arguments: ast.arguments) -> str:

@@ -51,12 +51,12 @@ PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_\-]*")
 VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, ast.Tuple, ast.Call))
 
 
-class Scope:
+class PythonScope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
     __slots__ = ("bound", "chain", "imports", "is_class", "objects", "parameters", "parent", "values")
 
-    def __init__(self, parent: "Scope | None", is_class: bool) -> None:
+    def __init__(self, parent: "PythonScope | None", is_class: bool) -> None:
         # A class body is no scope for the functions in it.
         while parent is not None and parent.is_class and not is_class:
             parent = parent.parent
@@ -69,19 +69,19 @@ class Scope:
         self.objects: dict[str, str] = {}
         self.parameters: list[str] = []
         # From the innermost scope on.
-        self.chain: tuple[Scope, ...] = (self, *(parent.chain if parent is not None else ()))
+        self.chain: tuple[PythonScope, ...] = (self, *(parent.chain if parent is not None else ()))
 
 
-class Values(Constants):
+class PythonValues(Constants):
     """Evaluates expressions within the scope being read. Launch arguments count by their declared default."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.has_rospkg = "rospkg" in text
-        self.scope = Scope(None, False)
+        self.scope = PythonScope(None, False)
         self.launch_defaults: dict[str, str] = {}
 
-    def imported(self, name: str, scope: Scope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
+    def imported(self, name: str, scope: PythonScope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
         """What a name stands for by the imports in view; empty when it is bound otherwise."""
         for looking in (scope or self.scope).chain:
             if name in looking.imports:
@@ -167,7 +167,7 @@ class Values(Constants):
         return None
 
 
-Values.evaluators = node_methods(Values, "value_")
+PythonValues.evaluators = node_methods(PythonValues, "value_")
 
 
 def _flat(value: Any) -> Iterator[Any]:

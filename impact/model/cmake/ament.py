@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import posixpath
 
-from .blocks import Call
-from .build import Found, GeneratedInterfaces
+from .blocks import CommandCall
+from .build import FoundPackage, GeneratedInterfaces
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
 from .targets import add_links, add_sources, known
@@ -23,7 +23,7 @@ def package_name(run: Interpreter) -> str:
 
 
 @handles("ament_target_dependencies")
-def ament_target_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_target_dependencies()."""
     if args:
         items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
@@ -43,7 +43,7 @@ _EXPORTS = {
 
 
 @handles(*_EXPORTS)
-def ament_export(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_export(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_export_dependencies() and kin."""
     how = _EXPORTS[call.name]
     given = sections(args, frozenset({"HAS_LIBRARY_TARGET", "NAMESPACE"}))
@@ -54,7 +54,7 @@ def ament_export(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("ament_package")
-def ament_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_package(CONFIG_EXTRAS ...)."""
     if not run.silent:
         run.ament_package = run.place(call.at)
@@ -68,7 +68,7 @@ def ament_package(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("ament_register_extension")
-def ament_register_extension(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_register_extension(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_register_extension(point package file): in a script that is given to others, the file runs for them."""
     if run.handing_on and len(args) >= 3:
         run.hand_on(run.tree_path(args[2]), call.at)
@@ -82,7 +82,7 @@ _ROSIDL = name_set(
 
 
 @handles("rosidl_generate_interfaces", least=1)
-def rosidl_generate_interfaces(run: Interpreter, call: Call, args: list[Word]) -> None:
+def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_generate_interfaces(target files... DEPENDENCIES packages...)."""
     if run.silent:
         return
@@ -120,21 +120,21 @@ def rosidl_generate_interfaces(run: Interpreter, call: Call, args: list[Word]) -
 
 
 @handles("rosidl_target_interfaces")
-def rosidl_target_interfaces(run: Interpreter, call: Call, args: list[Word]) -> None:
+def rosidl_target_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_target_interfaces(target interfaces typesupport), until Humble."""
     if len(args) >= 2:
         add_links(run, known(run, args[0]), [args[1]], "interfaces")
 
 
 @handles("rosidl_get_typesupport_target")
-def rosidl_get_typesupport_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+def rosidl_get_typesupport_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_get_typesupport_target(variable interfaces typesupport)."""
     if len(args) >= 3:
         run.set_text(args[0], f"{args[1]}__{args[2]}", args[1].at)
 
 
 @handles("rclcpp_components_register_nodes")
-def rclcpp_components_register_nodes(run: Interpreter, call: Call, args: list[Word]) -> None:
+def rclcpp_components_register_nodes(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rclcpp_components_register_nodes(target classes...)."""
     for item in split_words(args[1:]):
         if item not in ("RESOURCE_INDEX", "rclcpp_components"):
@@ -142,7 +142,7 @@ def rclcpp_components_register_nodes(run: Interpreter, call: Call, args: list[Wo
 
 
 @handles("rclcpp_components_register_node", least=1)
-def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Word]) -> None:
+def rclcpp_components_register_node(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rclcpp_components_register_node(target PLUGIN class EXECUTABLE name): also makes and installs an executable."""
     given = sections(args[1:], name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
     programs = given.get("EXECUTABLE", [])[:1]
@@ -155,7 +155,7 @@ def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Wor
 
 
 @handles("pluginlib_export_plugin_description_file", least=2)
-def pluginlib_export_plugin_description_file(run: Interpreter, call: Call, args: list[Word]) -> None:
+def pluginlib_export_plugin_description_file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """pluginlib_export_plugin_description_file(base_package file): the file is installed too."""
     item = args[1]
     path = run.tree_path(item)
@@ -166,7 +166,7 @@ def pluginlib_export_plugin_description_file(run: Interpreter, call: Call, args:
 
 
 @handles("ament_python_install_package", "_ament_cmake_python_install_package", least=1)
-def ament_python_install_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_python_install_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_python_install_package(name PACKAGE_DIR folder)."""
     given = sections(
         args[1:],
@@ -177,14 +177,14 @@ def ament_python_install_package(run: Interpreter, call: Call, args: list[Word])
 
 
 @handles("ament_python_install_module")
-def ament_python_install_module(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_python_install_module(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_python_install_module(file)."""
     for item in args[:1]:
         run.add_install("python", (run.tree_path(item),), "", item)
 
 
 @handles("generate_parameter_library", "generate_parameter_module", least=2)
-def generate_parameter_library(run: Interpreter, call: Call, args: list[Word]) -> None:
+def generate_parameter_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_parameter_library(target yaml [validation header])."""
     if run.silent:
         return
@@ -224,7 +224,7 @@ def test_arguments(args: list[Word]) -> dict[str, list[Word]]:
     "ament_add_ros_isolated_gmock",
     "ament_add_catch2",
 )
-def ament_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables."""
     if args:
         draft = run.new_target(args[0], "test", args[0].at)
@@ -233,7 +233,7 @@ def ament_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 @handles("ament_add_pytest_test", "ament_add_nose_test", "add_launch_test", "add_ros_test", "ament_add_test",
          "ament_add_ros_isolated_pytest_test", "add_ros_isolated_launch_test", least=1)  # fmt: skip
-def ament_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that run a file; add_launch_test() names its test after the file unless TARGET says otherwise."""
     given = test_arguments(args[1:])
     name = args[0]
@@ -249,34 +249,34 @@ def ament_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("ament_add_gtest_test", "ament_add_gmock_test", "ament_add_google_benchmark_test", "ament_add_test_label")
-def ament_known_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_known_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Commands about a test executable that is there already."""
 
 
 @handles("ament_vendor")
-def ament_vendor(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_vendor(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_vendor(): downloads and builds a project."""
     if args:
         run.new_target(args[0], "external", args[0].at)
 
 
 @handles("ament_auto_find_build_dependencies", "ament_auto_find_test_dependencies")
-def ament_auto_find_build_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_auto_find_build_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_auto_find_build_dependencies() and its twin for tests: find every dependency declared for it."""
     given = sections(args, frozenset({"REQUIRED"}))
     required = {str(item) for item in given.get("REQUIRED", [])}
     declared = run.declared.test if call.name.endswith("test_dependencies") else run.declared.build
     names = [name for name in declared if name not in required]
     for item in split_words(given.get("REQUIRED", [])):
-        run.add_found(Found(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
+        run.add_found(FoundPackage(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
         run.extend(str(item), item.at)
     for name in names:
-        run.add_found(Found(name, "ament_auto", run.place(call.at), conditions=run.conditions))
+        run.add_found(FoundPackage(name, "ament_auto", run.place(call.at), conditions=run.conditions))
         run.extend(name, call.at)
 
 
 @handles("ament_auto_add_library", "ament_auto_add_executable", "ament_auto_add_gtest", "ament_auto_add_gmock", least=1)
-def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_auto_add_library() and kin; DIRECTORY takes all sources of a folder."""
     name = args[0]
     kind = {"library": "library", "executable": "executable"}.get(call.name.rpartition("_")[2], "test")
@@ -312,14 +312,14 @@ def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> Non
     if kind == "test":
         add_links(run, draft, [word(dependency, call.at) for dependency in run.declared.test], "ament")
         framework = f"ament_cmake_{call.name.rpartition('_')[2]}"
-        run.add_found(Found(framework, "find_package", run.place(call.at), True, True, conditions=run.conditions,
+        run.add_found(FoundPackage(framework, "find_package", run.place(call.at), True, True, conditions=run.conditions,
                             via=call.name))  # fmt: skip
     else:
         run.automatic.append(draft)
 
 
 @handles("ament_auto_package", "autoware_ament_auto_package", "autoware_auto_package")
-def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_auto_package(): installs what ament_auto_add_*() made, include/, and INSTALL_TO_SHARE folders."""
     given = sections(
         args,
@@ -353,35 +353,35 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @stands_in_for("autoware_package")
-def autoware_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def autoware_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
     _wrapper_standard(run, call, 17)
     for name in ("ament_cmake_auto", "eigen3_cmake_module", "Eigen3"):
-        run.add_found(Found(name, "find_package", run.place(call.at), conditions=run.conditions, via=call.name))
+        run.add_found(FoundPackage(name, "find_package", run.place(call.at), conditions=run.conditions, via=call.name))
     ament_auto_find_build_dependencies(run, call, [])
 
 
 @stands_in_for("nav2_package", "moveit_package")
-def compile_defaults(run: Interpreter, call: Call, args: list[Word]) -> None:
+def compile_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """nav2_package() of nav2_common and moveit_package() of moveit_common: C++17 unless another is set."""
     _wrapper_standard(run, call, 17)
 
 
 @stands_in_for("set_compiler_options", "export_windows_symbols")
-def ros2_control_defaults(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ros2_control_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_compiler_options() and export_windows_symbols() of ros2_control_cmake: warnings, and C++17 unless set."""
     if call.name == "set_compiler_options":
         _wrapper_standard(run, call, 17)
 
 
-def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
+def _wrapper_standard(run: Interpreter, call: CommandCall, number: int) -> None:
     if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
         run.standards.append((number, run.place(call.at), True, False, run.conditions))
 
 
 @handles("ament_lint_auto_find_test_dependencies")
-def ament_lint_auto_find_test_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+def ament_lint_auto_find_test_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_lint_auto_find_test_dependencies(): finds every declared test dependency."""
     for name in run.declared.test:
-        run.add_found(Found(name, "ament_lint_auto", run.place(call.at), conditions=run.conditions))
+        run.add_found(FoundPackage(name, "ament_lint_auto", run.place(call.at), conditions=run.conditions))
         run.extend(name, call.at)

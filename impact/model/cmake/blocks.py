@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...facts.cmake import Argument, CMakeFile, Command
+from ...facts.cmake import CMakeArgument, CMakeFile, Command
 from .build import At
 from .values import Template
 
@@ -20,14 +20,14 @@ _ENDS = {
 _STARTS = frozenset(_ENDS.values())
 
 
-class Call:
+class CommandCall:
     """One command invocation; its arguments are made ready when it is first run."""
 
     __slots__ = ("_templates", "arguments", "at", "name", "path")
 
     def __init__(self, command: Command, path: str):
         self.name = command.name
-        self.arguments: tuple[Argument, ...] = command.arguments
+        self.arguments: tuple[CMakeArgument, ...] = command.arguments
         self.path = path
         self.at = At(path, command.line, command.column)
         self._templates: tuple[Template, ...] | None = None
@@ -48,18 +48,18 @@ class Block:
 
     __slots__ = ("body", "branches", "head", "kind")
 
-    def __init__(self, kind: str, head: Call):
+    def __init__(self, kind: str, head: CommandCall):
         self.kind = kind
         self.head = head
-        self.body: list[Call | Block] = []
-        self.branches: list[tuple[Call, list[Call | Block]]] = [(head, self.body)] if kind == "if" else []
+        self.body: list[CommandCall | Block] = []
+        self.branches: list[tuple[CommandCall, list[CommandCall | Block]]] = [(head, self.body)] if kind == "if" else []
 
 
-def blocks(facts: CMakeFile, path: str) -> tuple[list[Call | Block], list[tuple[At, str]]]:
+def blocks(facts: CMakeFile, path: str) -> tuple[list[CommandCall | Block], list[tuple[At, str]]]:
     """The file's commands in their blocks, and what does not match. An end without a start is skipped, a block without
     an end lasts until its parent's."""
-    top: list[Call | Block] = []
-    stack: list[tuple[Block, list[Call | Block]]] = []
+    top: list[CommandCall | Block] = []
+    stack: list[tuple[Block, list[CommandCall | Block]]] = []
     body = top
     problems: list[tuple[At, str]] = []
     surplus = 0
@@ -71,7 +71,7 @@ def blocks(facts: CMakeFile, path: str) -> tuple[list[Call | Block], list[tuple[
                 if surplus == 1:
                     problems.append((At(path, command.line, command.column), "blocks are nested too deeply"))
                 continue
-            block = Block(name, Call(command, path))
+            block = Block(name, CommandCall(command, path))
             body.append(block)
             stack.append((block, body))
             body = block.body
@@ -95,10 +95,10 @@ def blocks(facts: CMakeFile, path: str) -> tuple[list[Call | Block], list[tuple[
                 continue
             if stack and stack[-1][0].kind == "if":
                 body = []
-                stack[-1][0].branches.append((Call(command, path), body))
+                stack[-1][0].branches.append((CommandCall(command, path), body))
             else:
                 problems.append((At(path, command.line, command.column), f"{name}() without if()"))
         else:
-            body.append(Call(command, path))
+            body.append(CommandCall(command, path))
     problems.extend((block.head.at, f"{block.kind}() is never closed") for block, _ in stack)
     return top, problems

@@ -17,7 +17,7 @@ class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int = 0
 
 
-class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package looked for by CMake.
 
     how: `find_package`, `catkin` (a component of find_package(catkin)), `ament_auto` (declared dependencies found by
@@ -44,7 +44,7 @@ class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
     via: str = ""
 
 
-class Defined(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class DefinedMacro(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A preprocessor macro that CMake defines (-DNAME=value) for one target, or, where that is empty, for all."""
 
     name: str
@@ -120,7 +120,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     includes: tuple[str, ...] = ()
 
 
-class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Something the package promises its dependants.
 
     how: ament_export_dependencies, ament_export_include_directories, ament_export_libraries, ament_export_targets,
@@ -158,7 +158,7 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
         return self.installed and not for_tests(self.conditions)
 
 
-class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
     for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
@@ -193,12 +193,12 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     minimum: tuple[str, At] | None = None
     standard: tuple[int, At] | None = None
     standard_default_only: bool = False
-    found: tuple[Found, ...] = ()
+    found: tuple[FoundPackage, ...] = ()
     targets: tuple[BuildTarget, ...] = ()
     installs: tuple[Install, ...] = ()
-    exports: tuple[Exported, ...] = ()
+    exports: tuple[CMakeExport, ...] = ()
     generated: tuple[GeneratedInterfaces, ...] = ()
-    uses: tuple[Use, ...] = ()
+    uses: tuple[UnknownCommand, ...] = ()
     include_dirs: tuple[tuple[str, At], ...] = ()
     links: tuple[Link, ...] = ()
     catkin_package: At | None = None
@@ -209,13 +209,13 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     message_files: tuple[tuple[str, At], ...] = ()
     project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
-    macros: tuple[Defined, ...] = ()
+    macros: tuple[DefinedMacro, ...] = ()
     made: tuple[str, ...] = ()
-    handed_on: tuple[Found, ...] = ()
+    handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
 
 
-class Declared(msgspec.Struct, frozen=True, gc=False):
+class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
     """What package.xml declares, as far as CMake reads it: see interpret()."""
 
     build: tuple[str, ...] = ()

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import posixpath
 
-from .blocks import Call
+from .blocks import CommandCall
 from .build import At, GeneratedInterfaces
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .targets import add_links, add_sources, note_made
-from .values import Value, Word, sections, split_words, word
+from .values import CMakeValue, Word, sections, split_words, word
 
 _PACKAGE = name_set(
     """
@@ -30,7 +30,7 @@ _PROMISES = {
 
 
 @handles("catkin_package")
-def catkin_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_package()."""
     if not run.silent:
         run.catkin_package = run.place(call.at)
@@ -63,7 +63,7 @@ def _extras_path(run: Interpreter, item: Word) -> str:
 
 
 @handles("catkin_metapackage")
-def catkin_metapackage(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_metapackage(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_metapackage()."""
     if not run.silent:
         run.catkin_package = run.place(call.at)
@@ -74,7 +74,7 @@ _ADD_FILES = name_set("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL")
 
 
 @handles(*_MESSAGE_FOLDERS)
-def add_interface_files(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_interface_files(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_message_files() and kin; without files it takes the whole folder."""
     if run.silent:
         return
@@ -97,7 +97,7 @@ _GENERATORS = ("cpp", "py", "lisp", "eus", "nodejs")
 
 
 @handles("generate_messages")
-def generate_messages(run: Interpreter, call: Call, args: list[Word]) -> None:
+def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_messages(): its targets are X_generate_messages, X_generate_messages_cpp, X_gencpp and so on."""
     if run.silent:
         return
@@ -114,7 +114,7 @@ def generate_messages(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("generate_dynamic_reconfigure_options")
-def generate_dynamic_reconfigure_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_dynamic_reconfigure_options(): its target is X_gencfg."""
     if run.silent:
         return
@@ -125,7 +125,7 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: Call, args: lis
 
 
 @handles("catkin_python_setup")
-def catkin_python_setup(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_python_setup(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_python_setup(): what setup.py names is installed."""
     item = run.tree_path("setup.py")
     destination = f"lib/python3/dist-packages/{run.project or run.package}"
@@ -133,7 +133,7 @@ def catkin_python_setup(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("catkin_install_python")
-def catkin_install_python(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_install_python(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_install_python(PROGRAMS ... DESTINATION ...)."""
     given = sections(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
     destination = run.shown(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
@@ -155,7 +155,7 @@ _TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARG
     "rosbuild_add_gtest_build_flags",
     least=1,
 )
-def catkin_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables: catkin_add_gtest(), add_rostest_gtest() and kin."""
     name = args[0]
     draft = run.new_target(name, "test", name.at)
@@ -171,7 +171,7 @@ def catkin_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
     "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check",
     least=1,
 )
-def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are launch files or Python: a test target named after the file."""
     item = args[0]
     name = f"{run.package}_{item.replace('/', '_')}"
@@ -182,7 +182,7 @@ def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("catkin_download_test_data", "catkin_download", least=1)
-def catkin_download(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_download(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_download_test_data(): a custom target, and the file that it fetches."""
     run.new_target(args[0], "custom", args[0].at)
     given = sections(args[1:], frozenset({"DESTINATION", "FILENAME", "MD5"}))
@@ -192,11 +192,11 @@ def catkin_download(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("catkin_add_env_hooks", "catkin_add_env_hooks_", "rosbuild_init", "rosbuild_genmsg", "rosbuild_gensrv")
-def catkin_other(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_other(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Commands that set destinations or nothing at all."""
     if call.name == "rosbuild_init" and not run.project:
         at = At(call.path, call.at.line, call.at.column)
-        run.assign(run.scope, "PROJECT_NAME", Value((word(run.package, at),)))
+        run.assign(run.scope, "PROJECT_NAME", CMakeValue((word(run.package, at),)))
         run.project = run.package
     elif call.name in ("rosbuild_genmsg", "rosbuild_gensrv") and not run.silent:
         kind = call.name[-3:]

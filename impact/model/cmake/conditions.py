@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Protocol
 
-from ...conditions.cmake import COMPARISONS, NUMBER, Test, Token, constant
+from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, constant
 from .regex import match
-from .values import Value, split_list
+from .values import CMakeValue, split_list
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
 
@@ -16,7 +16,7 @@ _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
 class World(Protocol):
     """What a condition may ask."""
 
-    def variable(self, name: str) -> Value | None: ...
+    def variable(self, name: str) -> CMakeValue | None: ...
 
     def is_target(self, name: str) -> bool | None: ...
 
@@ -56,7 +56,7 @@ def version_key(text: str) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-class _InWorld(Test):
+class _InWorld(CMakeTest):
     """A test with the variables, targets and files that the interpreter knows."""
 
     def __init__(self, tokens: Sequence[Token], world: World) -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 
-from .blocks import Call
-from .build import At, Found
+from .blocks import CommandCall
+from .build import At, FoundPackage
 from .interpreter import Interpreter, handles
 from .language import add_module
 from .names import name_set, names
-from .values import REFERENCE, Value, Word, merge, sections, split_words, word
+from .values import REFERENCE, CMakeValue, Word, merge, sections, split_words, word
 
 _VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")
 _PKG_SPEC = re.compile(r"(.+?)\s*(>=|<=|=|>|<)\s*(\d.*)\Z")
@@ -30,7 +30,7 @@ _LISTS = name_set(
 
 
 @handles("find_package", "find_dependency", least=1)
-def find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def find_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """find_package() in all its signatures; each component of catkin is a package of its own."""
     first = call.templates[0]
     if first.kind == REFERENCE and not run.silent:
@@ -47,7 +47,7 @@ def is_unknown(text: str) -> bool:
     return "${" in text or "$ENV{" in text
 
 
-def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
+def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> None:
     flags: set[str] = set()
     components: list[Word] = []
     optional: list[Word] = []
@@ -82,7 +82,8 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
     conditions = run.under(name)
     add_module(run, f"Find{name}")
     if name == "catkin":
-        run.add_found(Found(name="catkin", how="find_package", at=run.place(name.at), required=required, quiet=quiet,
+        run.add_found(FoundPackage(name="catkin", how="find_package", at=run.place(name.at), required=required,
+                            quiet=quiet,
                             version=version, conditions=conditions))  # fmt: skip
         for component in split_words(components):
             add(
@@ -96,7 +97,7 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
             run.extend(component, component.at)
     else:
         run.add_found(
-            Found(
+            FoundPackage(
                 str(name),
                 "find_package",
                 run.place(name.at),
@@ -113,7 +114,7 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
     if not flags & {"CONFIG", "NO_MODULE"}:
         _run_module(run, call, str(name))
     if required:
-        found = Value((word("1", call.at),))
+        found = CMakeValue((word("1", call.at),))
         run.assign(run.scope, f"{name}_FOUND", found)
         if name.upper() != name:
             run.assign(run.scope, f"{name.upper()}_FOUND", found)
@@ -123,7 +124,7 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
         effect(run, call)
 
 
-def _run_module(run: Interpreter, call: Call, name: str) -> None:
+def _run_module(run: Interpreter, call: CommandCall, name: str) -> None:
     """Runs the find module of the tree that answers, for the targets and commands that it makes. What it looks for is
     its own affair, and its variables are set to what is not known."""
     held = run.get("CMAKE_MODULE_PATH")
@@ -147,7 +148,7 @@ def _run_module(run: Interpreter, call: Call, name: str) -> None:
 
 
 @handles("gz_find_package", "ign_find_package", least=1)
-def gz_find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+def gz_find_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """gz_find_package() of gz-cmake: a name, VERSION, REQUIRED and COMPONENTS count."""
     given = sections(args[1:], _GZ)
     version = given.get("VERSION", [])[:1]
@@ -176,10 +177,10 @@ def add(
 ) -> None:
     """Collects one package by name."""
     place = run.place(at if at is not None else name.at)
-    run.add_found(Found(str(name), how, place, required, quiet, conditions=conditions or run.under(name)))
+    run.add_found(FoundPackage(str(name), how, place, required, quiet, conditions=conditions or run.under(name)))
 
 
-def _catkin(run: Interpreter, call: Call) -> None:
+def _catkin(run: Interpreter, call: CommandCall) -> None:
     """What find_package(catkin) sets; destinations as documented for catkin_package()."""
     package = run.project or run.package
     values = {
@@ -198,14 +199,14 @@ def _catkin(run: Interpreter, call: Call) -> None:
         "CATKIN_GLOBAL_SHARE_DESTINATION": "share",
     }
     for name, text in values.items():
-        run.assign(run.scope, name, Value((word(text, call.at),)))
+        run.assign(run.scope, name, CMakeValue((word(text, call.at),)))
 
 
 _FINDING = {"catkin": _catkin}
 
 
 @handles("catkin_destinations")
-def catkin_destinations(run: Interpreter, call: Call, args: list[Word]) -> None:
+def catkin_destinations(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_destinations() sets what find_package(catkin) and project() set together."""
     _catkin(run, call)
 
@@ -224,7 +225,7 @@ _PKG_VARIABLES = names(
 
 
 @handles("pkg_check_modules", "pkg_search_module", least=2)
-def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
+def pkg_check_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """pkg_check_modules() and pkg_search_module(), with version bounds."""
     prefix = str(args[0])
     flags = {str(item) for item in args[1:] if item in _PKG_FLAGS}
@@ -246,7 +247,7 @@ def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
     for item, name, version, exact in entries[:1] if alternatives else entries:
         others = tuple(other for _, other, _, _ in entries[1:]) if alternatives else ()
         run.add_found(
-            Found(
+            FoundPackage(
                 name,
                 "pkg_check_modules",
                 run.place(item.at),
@@ -280,7 +281,7 @@ _LOCATE_STOPS = name_set(
 
 
 @handles("find_library", "find_path", "find_program", "find_file", least=2)
-def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
+def locate(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """find_library(), find_path(), find_program() and find_file(): the variable is set to what is not known."""
     variable = str(args[0])
     names: list[Word] = []
@@ -299,7 +300,7 @@ def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
         return
     first = names[0]
     run.add_found(
-        Found(
+        FoundPackage(
             str(first),
             call.name,
             run.place(first.at),
@@ -312,15 +313,15 @@ def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("fetchcontent_declare")
-def fetchcontent_declare(run: Interpreter, call: Call, args: list[Word]) -> None:
+def fetchcontent_declare(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """FetchContent_Declare(): names a project that is downloaded while configuring."""
     if args:
-        run.properties[f"FETCH {args[0].lower()}"] = Value((args[0],))
+        run.properties[f"FETCH {args[0].lower()}"] = CMakeValue((args[0],))
         run.add_tools(args)
 
 
 @handles("fetchcontent_makeavailable", "fetchcontent_populate", "fetchcontent_getproperties")
-def fetchcontent_makeavailable(run: Interpreter, call: Call, args: list[Word]) -> None:
+def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """FetchContent_MakeAvailable(): the project's targets are there, but cannot be seen."""
     for name in args if call.name == "fetchcontent_makeavailable" else args[:1]:
         lower = name.lower()
@@ -332,7 +333,7 @@ def fetchcontent_makeavailable(run: Interpreter, call: Call, args: list[Word]) -
 
 
 @handles("externalproject_add")
-def externalproject_add(run: Interpreter, call: Call, args: list[Word]) -> None:
+def externalproject_add(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ExternalProject_Add(): a custom target that downloads and builds."""
     if args:
         run.new_target(args[0], "external", args[0].at)
@@ -340,7 +341,7 @@ def externalproject_add(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("externalproject_get_property")
-def externalproject_get_property(run: Interpreter, call: Call, args: list[Word]) -> None:
+def externalproject_get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ExternalProject_Get_Property(): folders that are not known before the build."""
     for name in args[1:]:
         run.set_unknown(name, call.at)

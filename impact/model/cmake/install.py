@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...facts.condition import Condition
-from .blocks import Call
+from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .values import Word, following, merge, split_words
@@ -41,7 +41,7 @@ _TYPES = {
 
 
 @handles("install", least=1)
-def install(run: Interpreter, call: Call, args: list[Word]) -> None:
+def install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """install() of targets, files, programs, folders and exports. Scripts and code are not followed."""
     if run.silent:
         return
@@ -59,7 +59,7 @@ def install(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("install_targets", "install_files", "install_programs")
-def old_install(run: Interpreter, call: Call, args: list[Word]) -> None:
+def old_install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """install_targets() and kin, as CMake had them before install()."""
     if len(args) > 1:
         kind = call.name.partition("_")[2]
@@ -67,7 +67,7 @@ def old_install(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.add_install(kind, items, run.shown(args[0].lstrip("/")), call)
 
 
-def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
+def _targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     names: list[Word] = []
     destinations: dict[str, str] = {}
     artifact = ""
@@ -116,7 +116,7 @@ def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.add_install("targets", map(str, members), destination, members[0], **more)
 
 
-def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
+def _files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> None:
     items: list[Word] = []
     for item in args:
         if item in _KEYWORDS:
@@ -140,7 +140,7 @@ def _destination(run: Interpreter, args: list[Word]) -> str:
     return destination or _TYPES.get(following(args, "TYPE") or "", "")
 
 
-def _directory(run: Interpreter, call: Call, args: list[Word]) -> None:
+def _directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     items: list[Word] = []
     patterns: list[str] = []
     mode = ""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 HEADER_NAME = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
 
 
-class Installed(NamedTuple):
+class InstalledHeaders(NamedTuple):
     """The headers of a package that are installed. headers: path in the tree to its path in the prefix. known: nothing
     else can be there, as no rule installs what cannot be told. by_file: paths of headers that a rule names itself,
     rather than the folder they lie in."""
@@ -27,7 +27,7 @@ class Installed(NamedTuple):
     by_file: frozenset[str]
 
 
-def installed_headers(package: Package) -> Installed:
+def installed_headers(package: Package) -> InstalledHeaders:
     """The headers that the package's rules install, whatever condition they stand under."""
     found: dict[str, str] = {}
     by_file: set[str] = set()
@@ -49,7 +49,7 @@ def installed_headers(package: Package) -> Installed:
                     by_file.add(path)
     if any(found_.how == "ament_auto" for found_ in package.build.found):
         known = known and package.build.ament_package is not None
-    return Installed(found, known, frozenset(by_file))
+    return InstalledHeaders(found, known, frozenset(by_file))
 
 
 def copied_files(install: Install, destination: str, files: tuple[str, ...]) -> Iterator[tuple[str, str]]:

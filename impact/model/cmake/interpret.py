@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from ...facts.cmake import CMakeFile
 from . import ament, catkin, find, install, language, lists, paths, targets
-from .build import Build, Declared
+from .build import Build, DeclaredPackages
 from .interpreter import Interpreter
 
 # Importing these registers what their commands mean.
@@ -44,7 +44,7 @@ def interpret(
 
     Always returns; what could not be told or went beyond the bounds is in `unresolved`.
     """
-    declared = Declared(
+    declared = DeclaredPackages(
         dependencies, test_dependencies, dependencies if exported_dependencies is None else exported_dependencies
     )
     return Interpreter(package_path, read, exists, glob, package, declared, extras).run()

@@ -19,8 +19,18 @@ from ...conditions.cmake import asks_only_for_packages, packages_asked
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
 from . import conditions as tests
-from .blocks import Block, Call, blocks
-from .build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
+from .blocks import Block, CommandCall, blocks
+from .build import (
+    At,
+    Build,
+    CMakeExport,
+    DeclaredPackages,
+    DefinedMacro,
+    FoundPackage,
+    GeneratedInterfaces,
+    Install,
+    UnknownCommand,
+)
 from .drafts import TargetDraft, Targets
 from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
 from .values import (
@@ -30,8 +40,8 @@ from .values import (
     QUOTED_REFERENCE,
     REFERENCE,
     UNSET,
+    CMakeValue,
     Template,
-    Value,
     Word,
     join,
     merge,
@@ -56,7 +66,7 @@ MAX_CONDITIONS = 50
 
 NORMAL, BREAK, CONTINUE, RETURN, FATAL = range(5)
 
-Handler = Callable[["Interpreter", Call, list[Word]], "int | None"]
+Handler = Callable[["Interpreter", CommandCall, list[Word]], "int | None"]
 
 
 # Keywords of ExternalProject_Add and FetchContent_Declare, to the program that downloads.
@@ -85,7 +95,7 @@ class Interpreter:
         exists: Callable[[str], bool],
         glob: Callable[[str, bool], list[str]],
         package: str,
-        declared: Declared,
+        declared: DeclaredPackages,
         extras: Callable[[str], tuple[str, ...]],
     ):
         self.package_path = package_path.strip("/")
@@ -96,16 +106,16 @@ class Interpreter:
         self.declared = declared
         self.extras = extras
 
-        self.scopes: list[dict[str, Value]] = [{}]
+        self.scopes: list[dict[str, CMakeValue]] = [{}]
         self.scope = self.scopes[0]
-        self.cache: dict[str, Value] = {}
-        self.environment: dict[str, Value] = {}
-        self.properties: dict[str, Value] = {}
-        self.overlay: dict[str, Value] = {}  # arguments of the macro that is running
-        self.definitions: dict[str, tuple[Block, dict[str, Value]]] = {}
+        self.cache: dict[str, CMakeValue] = {}
+        self.environment: dict[str, CMakeValue] = {}
+        self.properties: dict[str, CMakeValue] = {}
+        self.overlay: dict[str, CMakeValue] = {}  # arguments of the macro that is running
+        self.definitions: dict[str, tuple[Block, dict[str, CMakeValue]]] = {}
         self.conditions: tuple[Condition, ...] = ()
         self.assumed: dict[str, bool] = {}
-        self.journal: list[tuple[dict[str, Value], str, Value | None]] = []
+        self.journal: list[tuple[dict[str, CMakeValue], str, CMakeValue | None]] = []
         self.recording = 0
         self.call_site: At | None = None
         self.via = ""  # the command of another package that is running
@@ -115,14 +125,14 @@ class Interpreter:
         self.nesting = 0
         self.maybe_break = False
         self.minimum_policy: tuple[int, ...] = (3, 5)
-        self.parsed: dict[str, list[Call | Block] | None] = {}
+        self.parsed: dict[str, list[CommandCall | Block] | None] = {}
         self.including: list[str] = []
         self.extended: set[str] = set()
         self.exported: dict[str, str] = {}  # folder of CMake files -> the package it belongs to
         self.modules: set[str] = set()
         self.guarded: set[str] = set()
         self.made: dict[str, None] = {}
-        self.handed_on: dict[Found, None] = {}
+        self.handed_on: dict[FoundPackage, None] = {}
         self.handing_on = False
         self.passed: dict[str, tuple[At, dict[str, None]]] = {}  # sources given to commands that nothing defines
         self.automatic: list[TargetDraft] = []  # made by ament_auto_add_*()
@@ -130,13 +140,13 @@ class Interpreter:
         self.project = ""
         self.minimum: tuple[str, At] | None = None
         self.standards: list[tuple[int, At, bool, bool, tuple[Condition, ...]]] = []
-        self.macros: dict[Defined, None] = {}
-        self.found: dict[Found, None] = {}
+        self.macros: dict[DefinedMacro, None] = {}
+        self.found: dict[FoundPackage, None] = {}
         self.targets = Targets()
         self.installs: dict[Install, None] = {}
-        self.exports: dict[Exported, None] = {}
+        self.exports: dict[CMakeExport, None] = {}
         self.generated: list[GeneratedInterfaces] = []
-        self.uses: dict[Use, None] = {}
+        self.uses: dict[UnknownCommand, None] = {}
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
@@ -197,8 +207,8 @@ class Interpreter:
             "CMAKE_INSTALL_LIBEXECDIR": "libexec",
         }
         for name, text in known.items():
-            self.scope[name] = Value((word(text, at),))
-        empty = Value((word("", at),))
+            self.scope[name] = CMakeValue((word(text, at),))
+        empty = CMakeValue((word("", at),))
         for name in FALSE_PLATFORMS:
             self.scope[name] = empty
         for name in ("CMAKE_CXX_FLAGS", "CMAKE_C_FLAGS", "CMAKE_MODULE_PATH", "CMAKE_PREFIX_PATH"):
@@ -250,7 +260,7 @@ class Interpreter:
             for argument in command.arguments
         )
 
-    def load(self, path: str) -> list[Call | Block] | None:
+    def load(self, path: str) -> list[CommandCall | Block] | None:
         """Blocks of a file of the tree, None when it is not there."""
         if path in self.parsed:
             return self.parsed[path]
@@ -266,7 +276,7 @@ class Interpreter:
                 self.unresolved[problem] = None
         return body
 
-    def run_body(self, body: list[Call | Block]) -> int:
+    def run_body(self, body: list[CommandCall | Block]) -> int:
         """Runs commands in order; returns how they ended."""
         self.spend(1)
         self.nesting += 1
@@ -275,14 +285,14 @@ class Interpreter:
             raise _TooMuch("calls are nested too deeply")
         try:
             for node in body:
-                signal = self.run_call(node) if type(node) is Call else self.run_block(node)  # type: ignore[arg-type]
+                signal = self.run_call(node) if type(node) is CommandCall else self.run_block(node)  # type: ignore[arg-type]
                 if signal:
                     return signal
         finally:
             self.nesting -= 1
         return NORMAL
 
-    def run_call(self, call: Call) -> int:
+    def run_call(self, call: CommandCall) -> int:
         """Runs one command."""
         self.spend(1)
         name = self.command = call.name
@@ -304,7 +314,7 @@ class Interpreter:
             self.pass_sources(call, words)
         return NORMAL
 
-    def pass_sources(self, call: Call, words: list[Word]) -> None:
+    def pass_sources(self, call: CommandCall, words: list[Word]) -> None:
         """Remembers the sources given to a command that nothing defines: it most likely builds them."""
         if self.silent or _NO_BUILDER.search(call.name):
             return
@@ -330,14 +340,14 @@ class Interpreter:
         if self.steps > MAX_STEPS:
             raise _TooMuch("more work than 40,000 commands")
 
-    def use_command(self, call: Call) -> None:
+    def use_command(self, call: CommandCall) -> None:
         """Notes a command that neither CMake nor the tree defines."""
         if self.silent or call.name in self.definitions:
             return
         module = MODULE_OF.get(call.name, "")
         if module and module in self.modules:
             return
-        self.uses[Use("command", call.name, self.place(call.at), module, self.conditions)] = None
+        self.uses[UnknownCommand("command", call.name, self.place(call.at), module, self.conditions)] = None
 
     def run_block(self, block: Block) -> int:
         """Runs a block command."""
@@ -360,7 +370,7 @@ class Interpreter:
         """Runs the branches that may be taken."""
         outer = self.conditions
         before: tuple[Condition, ...] = ()
-        outcomes: list[dict[tuple[int, str], tuple[dict[str, Value], Value | None]]] = []
+        outcomes: list[dict[tuple[int, str], tuple[dict[str, CMakeValue], CMakeValue | None]]] = []
         returned: list[tuple[Condition, ...]] = []
         signals: set[int] = set()
         exhaustive = False
@@ -430,7 +440,7 @@ class Interpreter:
             self.overlay = overlay
             del self.scopes[scope_depth:]
             self.scope = self.scopes[-1]
-        changes: dict[tuple[int, str], tuple[dict[str, Value], Value | None]] = {}
+        changes: dict[tuple[int, str], tuple[dict[str, CMakeValue], CMakeValue | None]] = {}
         for where, name, _ in self.journal[mark:]:
             key = (id(where), name)
             if key not in changes:
@@ -445,7 +455,7 @@ class Interpreter:
 
     def merge_outcomes(self, outcomes) -> None:
         """Leaves in each variable what the branches wrote, joined."""
-        touched: dict[tuple[int, str], dict[str, Value]] = {}
+        touched: dict[tuple[int, str], dict[str, CMakeValue]] = {}
         for changes in outcomes:
             for key, (where, _) in changes.items():
                 touched[key] = where
@@ -453,14 +463,14 @@ class Interpreter:
             left = [changes[(key, name)][1] if (key, name) in changes else where.get(name) for changes in outcomes]
             if None in left and name.endswith(READ_SUFFIXES):
                 # Where no branch has set it, a found package may have.
-                unknown = Value((word(f"${{{name}}}", self.here(), (), False),), False)
+                unknown = CMakeValue((word(f"${{{name}}}", self.here(), (), False),), False)
                 left = [value if value is not None else unknown for value in left]
             value = join(left)
             if value is not None:
                 self.spend(len(value.words) >> 5)
                 self.assign(where, name, value)
 
-    def decide(self, head: Call) -> tuple[bool | None, str]:
+    def decide(self, head: CommandCall) -> tuple[bool | None, str]:
         """The value of a test and its text."""
         self.command = head.name
         tokens = self.condition_tokens(head)
@@ -489,7 +499,7 @@ class Interpreter:
         else:
             self.assumed[text] = value
 
-    def condition_tokens(self, head: Call) -> list[tests.Token]:
+    def condition_tokens(self, head: CommandCall) -> list[tests.Token]:
         """Arguments of if() expanded; each remembers whether it was quoted."""
         tokens: list[tests.Token] = []
         for template in head.templates:
@@ -544,10 +554,10 @@ class Interpreter:
                 break
             if len(names) == 1 and len(items) > 1:
                 for index, item in enumerate(items):
-                    self.assign(scope, f"{names[0]}_{index}", Value((item,), item.sure))
+                    self.assign(scope, f"{names[0]}_{index}", CMakeValue((item,), item.sure))
             else:
                 for name, item in zip(names, items, strict=False):
-                    self.assign(scope, name, Value((item,), item.sure or len(names) == 1))
+                    self.assign(scope, name, CMakeValue((item,), item.sure or len(names) == 1))
             self.conditions = merge(outer, items[0].conditions) if items else outer
             signal = self.run_body(block.body)
             if signal == BREAK or signal >= RETURN:
@@ -581,7 +591,7 @@ class Interpreter:
             return [tuple(words[index] if index < len(words) else blank for words in zipped) for index in range(length)]
         return [(item,) for item in items]
 
-    def numbers(self, args: list[Word], head: Call) -> range:
+    def numbers(self, args: list[Word], head: CommandCall) -> range:
         """Rounds of foreach(RANGE)."""
         try:
             bounds = [int(item) for item in args[:3]]
@@ -617,24 +627,24 @@ class Interpreter:
         self.give_up(block.head.at, f"while() was left after {MAX_ITERATIONS} rounds")
         return NORMAL
 
-    def invoke(self, call: Call, defined: tuple[Block, dict[str, Value]]) -> int:
+    def invoke(self, call: CommandCall, defined: tuple[Block, dict[str, CMakeValue]]) -> int:
         """Calls a function or macro of the tree."""
         block, captured = defined
         templates = block.head.templates
         names = [template.raw for template in templates[1:]]
         args = self.expand(call.templates)
         at = call.at
-        arguments: dict[str, Value] = dict(captured)
+        arguments: dict[str, CMakeValue] = dict(captured)
         for index, name in enumerate(names):
             if index < len(args):
-                arguments[name] = Value((args[index],), args[index].sure)
+                arguments[name] = CMakeValue((args[index],), args[index].sure)
             else:
                 arguments[name] = UNSET
-        arguments["ARGC"] = Value((word(str(len(args)), at),))
+        arguments["ARGC"] = CMakeValue((word(str(len(args)), at),))
         arguments["ARGV"] = _listing(args)
         arguments["ARGN"] = _listing(args[len(names) :])
         for index, item in enumerate(args[:64]):
-            arguments[f"ARGV{index}"] = Value((item,), item.sure)
+            arguments[f"ARGV{index}"] = CMakeValue((item,), item.sure)
 
         overlay, conditions, site, via = self.overlay, self.conditions, self.call_site, self.via
         if site is None and not self.inside(block.head.path):
@@ -653,8 +663,8 @@ class Interpreter:
                     del scope[name]
                 scope.update(arguments)
                 directory = self.absolute(posixpath.dirname(block.head.path))
-                scope["CMAKE_CURRENT_FUNCTION"] = Value((word(block.head.templates[0].raw, at),))
-                scope["CMAKE_CURRENT_FUNCTION_LIST_DIR"] = Value((word(directory, at),))
+                scope["CMAKE_CURRENT_FUNCTION"] = CMakeValue((word(block.head.templates[0].raw, at),))
+                scope["CMAKE_CURRENT_FUNCTION_LIST_DIR"] = CMakeValue((word(directory, at),))
                 self.push(scope)
                 try:
                     signal = self.run_body(block.body)
@@ -696,7 +706,7 @@ class Interpreter:
                 inside = posixpath.relpath(subdirectory, self.package_path or ".")
                 listing["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BINARY, self.package, inside)
             for name, text in listing.items():
-                self.scope[name] = Value((word(text, at),))
+                self.scope[name] = CMakeValue((word(text, at),))
             signal = self.run_body(body)
         finally:
             self.including.pop()
@@ -722,7 +732,7 @@ class Interpreter:
             # Installed, a package's CMake files lie together in the folder that <package>_DIR names.
             folder = next((posixpath.dirname(path) for path in paths if "/cmake/" in path), posixpath.dirname(paths[0]))
             self.exported[self.absolute(folder)] = package
-            self.assign(self.scope, f"{package}_DIR", Value((word(self.absolute(folder), at),)))
+            self.assign(self.scope, f"{package}_DIR", CMakeValue((word(self.absolute(folder), at),)))
         for path in paths:
             self.silent += 1
             try:
@@ -748,7 +758,7 @@ class Interpreter:
         self.silent += 1
         self.push(dict(self.scope))
         folder = self.absolute(posixpath.dirname(path))
-        self.scope[f"{self.package}_DIR"] = Value((word(folder, at),))
+        self.scope[f"{self.package}_DIR"] = CMakeValue((word(folder, at),))
         self.exported[folder] = self.package
         try:
             self.run_file(path, at)
@@ -773,12 +783,12 @@ class Interpreter:
                 return path
         return None
 
-    def define_all(self, body: list[Call | Block]) -> None:
+    def define_all(self, body: list[CommandCall | Block]) -> None:
         """Learns the functions and macros of a body without running it."""
         pending = list(body)
         while pending:
             node = pending.pop()
-            if isinstance(node, Call):
+            if isinstance(node, CommandCall):
                 continue
             if node.kind in ("function", "macro"):
                 templates = node.head.templates
@@ -788,7 +798,7 @@ class Interpreter:
                 for _, branch in node.branches:
                     pending.extend(branch)
 
-    def push(self, scope: dict[str, Value]) -> None:
+    def push(self, scope: dict[str, CMakeValue]) -> None:
         """Opens a variable scope."""
         self.spend(len(scope) >> 7)
         self.scopes.append(scope)
@@ -799,14 +809,14 @@ class Interpreter:
         self.scopes.pop()
         self.scope = self.scopes[-1]
 
-    def get(self, name: str) -> Value | None:
+    def get(self, name: str) -> CMakeValue | None:
         """A normal or cache variable, None when nothing has set or unset it."""
         value = self.scope.get(name)
         return value if value is not None else self.cache.get(name)
 
     variable = get
 
-    def assign(self, where: dict[str, Value], name: str, value: Value) -> None:
+    def assign(self, where: dict[str, CMakeValue], name: str, value: CMakeValue) -> None:
         """Writes into a scope, so that a branch on trial can take it back."""
         if len(value.text) > 4096:
             self.spend(len(value.text) >> 12)
@@ -820,20 +830,20 @@ class Interpreter:
         if len(kept) > MAX_WORDS:
             self.give_up(self.call_site, f"`{name}` has more than {MAX_WORDS} items")
             kept = kept[:MAX_WORDS]
-        self.assign(self.scope, name, Value(kept, sure and all(item.sure for item in kept)))
+        self.assign(self.scope, name, CMakeValue(kept, sure and all(item.sure for item in kept)))
 
     def set_text(self, name: str, text: str | None, at: At, sure: bool = True) -> None:
         """Sets a normal variable to a single text, or as set_unknown() where that is None."""
         if text is None:
             self.set_unknown(name, at)
             return
-        self.assign(self.scope, name, Value((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
+        self.assign(self.scope, name, CMakeValue((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
 
     def set_unknown(self, name: str, at: At) -> None:
         """Marks a variable as set to something that cannot be told; it reads as `${name}`."""
-        self.assign(self.scope, name, Value((word(f"${{{name}}}", at, (), False),), False))
+        self.assign(self.scope, name, CMakeValue((word(f"${{{name}}}", at, (), False),), False))
 
-    def lookup(self, scope: str, name: str) -> Value | None:
+    def lookup(self, scope: str, name: str) -> CMakeValue | None:
         """What a reference reads."""
         if scope == "ENV":
             return self.environment.get(name)
@@ -866,18 +876,18 @@ class Interpreter:
         self.spend(len(words) >> 5)
         return words
 
-    def reference(self, template: Template, head: Call | None) -> Value:
+    def reference(self, template: Template, head: CommandCall | None) -> CMakeValue:
         """The value behind a plain `${name}`."""
         name = template.name
         value = self.lookup("", name)
         if value is None:
             self.use_variable(name, template.at)
-            return Value((word(f"${{{name}}}", template.at, (), False),), False)
+            return CMakeValue((word(f"${{{name}}}", template.at, (), False),), False)
         if not value.sure:
             value = _placed(value, f"${{{name}}}", template.at)
         return _flat(value)
 
-    def expand_one(self, template: Template, head: Call | None) -> tuple[Word, ...]:
+    def expand_one(self, template: Template, head: CommandCall | None) -> tuple[Word, ...]:
         """Words of a quoted reference or a mixed argument."""
         at = template.at
         if template.kind == QUOTED_REFERENCE:
@@ -900,8 +910,8 @@ class Interpreter:
             return (word(text, at, conditions, sure),)
         return tuple(word(part, at, conditions, sure) for part in split_list(text))
 
-    def _lookup_used(self, at: At) -> Callable[[str, str], Value | None]:
-        def lookup(scope: str, name: str) -> Value | None:
+    def _lookup_used(self, at: At) -> Callable[[str, str], CMakeValue | None]:
+        def lookup(scope: str, name: str) -> CMakeValue | None:
             value = self.lookup(scope, name)
             if value is None and not scope:
                 self.use_variable(name, at)
@@ -915,7 +925,7 @@ class Interpreter:
             return
         if not name.endswith(READ_SUFFIXES) and not (name.startswith("CATKIN_") and self.command == "install"):
             return
-        self.uses[Use("variable", name, self.place(at), self.command, self.conditions)] = None
+        self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions)] = None
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""
@@ -1016,16 +1026,20 @@ class Interpreter:
         for keyword, value in itertools.pairwise(args):
             program = _DOWNLOADERS.get(keyword) or (str(value) if keyword.endswith("_COMMAND") else "")
             if program and value and "$" not in program and "/" not in program:
-                self.add_found(Found(program, "program", self.place(value.at), True, conditions=self.under(value)))
+                self.add_found(
+                    FoundPackage(program, "program", self.place(value.at), True, conditions=self.under(value))
+                )
 
-    def add_found(self, found: Found) -> None:
+    def add_found(self, found: FoundPackage) -> None:
         """Collects a package looked for."""
         if self.handing_on:
             self.handed_on[found] = None
         elif not self.silent:
             self.found[structs.replace(found, via=self.via) if self.via else found] = None
 
-    def add_install(self, kind: str, items: Iterable[str], destination: str, of: Word | Call, **more: Any) -> None:
+    def add_install(
+        self, kind: str, items: Iterable[str], destination: str, of: Word | CommandCall, **more: Any
+    ) -> None:
         """Collects an install rule. of: what names it, whose place and conditions it has. more: fields of Install."""
         conditions = self.under(of) if isinstance(of, Word) else self.conditions
         fields = {"at": self.place(of.at), "conditions": conditions, **more}
@@ -1038,7 +1052,7 @@ class Interpreter:
     ) -> None:
         """Collects a promise to dependants."""
         if not self.silent and item:
-            self.exports[Exported(self.shown(item), how, self.place(at), conditions, context, executable)] = None
+            self.exports[CMakeExport(self.shown(item), how, self.place(at), conditions, context, executable)] = None
 
     def add_standard(self, number: int, at: At, is_default: bool, by_flag: bool) -> None:
         """Collects a C++ standard set for everything."""
@@ -1051,7 +1065,7 @@ class Interpreter:
         return self.targets.make(str(name), kind, self.place(at), conditions)
 
 
-def _listing(args: list[Word]) -> Value:
+def _listing(args: list[Word]) -> CMakeValue:
     """Arguments as the value of ARGV or ARGN."""
     words: list[Word] = []
     for item in args:
@@ -1059,29 +1073,29 @@ def _listing(args: list[Word]) -> Value:
             words.extend(item.parts)
         else:
             words.append(item)
-    return Value(tuple(words), all(item.sure for item in words))
+    return CMakeValue(tuple(words), all(item.sure for item in words))
 
 
-def _placed(value: Value, unknown: str, at: At) -> Value:
+def _placed(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
     """The value with what is not known of it standing where it is read."""
     if unknown not in value.words:
         return value
     here = word(unknown, at, (), False)
-    made = Value(tuple(here if item == unknown else item for item in value.words), False, value.defined)
+    made = CMakeValue(tuple(here if item == unknown else item for item in value.words), False, value.defined)
     if value.chosen is not value.words:
         made.chosen = tuple(here if item == unknown else item for item in value.chosen)
         made.text = value.text
     return made
 
 
-def _flat(value: Value) -> Value:
+def _flat(value: CMakeValue) -> CMakeValue:
     """A value whose words hold no more lists: an argument in quotes may."""
     for item in value.words:
         if ";" in item:
             break
     else:
         return value
-    made = Value(tuple(split_words(value.words)), value.sure, value.defined)
+    made = CMakeValue(tuple(split_words(value.words)), value.sure, value.defined)
     if value.chosen is not value.words:
         made.chosen = tuple(split_words(value.chosen))
     return made
@@ -1097,7 +1111,7 @@ def _register_in(table: dict[str, Handler]) -> Callable[..., Callable[[Handler],
     def register(*names: str, least: int = 0) -> Callable[[Handler], Handler]:
         def keep(handler: Handler) -> Handler:
             @wraps(handler)
-            def handle(run: Interpreter, call: Call, args: list[Word]) -> int | None:
+            def handle(run: Interpreter, call: CommandCall, args: list[Word]) -> int | None:
                 return handler(run, call, args) if len(args) >= least else None
 
             table.update(dict.fromkeys(names, handle if least else handler))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import posixpath
 
-from .blocks import Call
-from .build import Found
+from .blocks import CommandCall
+from .build import FoundPackage
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
 from .lists import integer, list_items
@@ -15,7 +15,7 @@ from .standard import note_variable
 from .targets import note_written
 from .values import (
     UNSET,
-    Value,
+    CMakeValue,
     Word,
     following,
     position,
@@ -28,18 +28,18 @@ from .values import (
 
 
 @handles("set", least=1)
-def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
+def set_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set(): normal, parent scope, cache and environment variables."""
     name = str(args[0])
     values = args[1:]
     if name.startswith("ENV{"):
-        run.assign(run.environment, name[4:].rstrip("}"), Value(tuple(values[:1])))
+        run.assign(run.environment, name[4:].rstrip("}"), CMakeValue(tuple(values[:1])))
         return
     if "CACHE" in values:
         index = position(values, "CACHE")
         kind = values[index + 1] if index + 1 < len(values) else ""
         fixed = kind == "INTERNAL" or "FORCE" in values[index + 1 :]
-        kept = Value(with_conditions(split_words(values[:index]), run.conditions))
+        kept = CMakeValue(with_conditions(split_words(values[:index]), run.conditions))
         note_variable(run, name, kept.text, args[0])
         if fixed:
             run.scope.pop(name, None)
@@ -49,7 +49,7 @@ def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
         values = values[:-1]
         where = run.scopes[-2] if len(run.scopes) > 1 else {}
         items = with_conditions(list_items(values), run.conditions)
-        run.assign(where, name, Value(items, all(item.sure for item in items)) if items else UNSET)
+        run.assign(where, name, CMakeValue(items, all(item.sure for item in items)) if items else UNSET)
         return
     if not values:
         run.assign(run.scope, name, UNSET)
@@ -59,7 +59,7 @@ def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("unset", least=1)
-def unset(run: Interpreter, call: Call, args: list[Word]) -> None:
+def unset(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """unset()."""
     name = str(args[0])
     if name.startswith("ENV{"):
@@ -74,15 +74,15 @@ def unset(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("option", "cmake_dependent_option", least=1)
-def option(run: Interpreter, call: Call, args: list[Word]) -> None:
+def option(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """option(): the default is remembered, but a user may choose otherwise."""
     default = args[2] if len(args) > 2 else word("OFF", call.at)
     if run.scope.get(args[0]) is None:
-        run.assign(run.cache, str(args[0]), unsure(Value((word(str(default), call.at),))))
+        run.assign(run.cache, str(args[0]), unsure(CMakeValue((word(str(default), call.at),))))
 
 
 @handles("include", least=1)
-def include(run: Interpreter, call: Call, args: list[Word]) -> None:
+def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """include() of a file of the tree, of a module on CMAKE_MODULE_PATH, or of one of CMake's own."""
     name = args[0]
     optional = "OPTIONAL" in args[1:]
@@ -99,7 +99,9 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
         if name in MODULES:
             if name.startswith("Find") and not name.startswith("FindPackage"):
                 place = run.place(name.at)
-                run.add_found(Found(name.removeprefix("Find"), "find_package", place, conditions=run.under(name)))
+                run.add_found(
+                    FoundPackage(name.removeprefix("Find"), "find_package", place, conditions=run.under(name))
+                )
             return
     if name.endswith("_USE_FILE}") or name.startswith("$ENV{ROS_ROOT}/core/rosbuild/"):
         return  # settings of a found package, or rosbuild itself, whose macros are known
@@ -122,7 +124,7 @@ def add_module(run: Interpreter, name: str) -> None:
 
 
 @handles("include_guard")
-def include_guard(run: Interpreter, call: Call, args: list[Word]) -> int:
+def include_guard(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """include_guard()."""
     if call.path in run.guarded:
         return RETURN
@@ -131,7 +133,7 @@ def include_guard(run: Interpreter, call: Call, args: list[Word]) -> int:
 
 
 @handles("add_subdirectory", "subdirs")
-def add_subdirectory(run: Interpreter, call: Call, args: list[Word]) -> int:
+def add_subdirectory(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """add_subdirectory()."""
     for directory in args if call.name == "subdirs" else args[:1]:
         relative = run.relative(run.resolve(directory))
@@ -147,7 +149,7 @@ def add_subdirectory(run: Interpreter, call: Call, args: list[Word]) -> int:
 
 
 @handles("return")
-def return_(run: Interpreter, call: Call, args: list[Word]) -> int:
+def return_(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """return(), with PROPAGATE."""
     if args and args[0] == "PROPAGATE" and len(run.scopes) > 1:
         for name in args[1:]:
@@ -157,25 +159,25 @@ def return_(run: Interpreter, call: Call, args: list[Word]) -> int:
 
 
 @handles("break")
-def break_(run: Interpreter, call: Call, args: list[Word]) -> int:
+def break_(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """break()."""
     return BREAK
 
 
 @handles("continue")
-def continue_(run: Interpreter, call: Call, args: list[Word]) -> int:
+def continue_(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """continue()."""
     return CONTINUE
 
 
 @handles("message")
-def message(run: Interpreter, call: Call, args: list[Word]) -> int:
+def message(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """message(): FATAL_ERROR ends the run."""
     return FATAL if args and args[0] == "FATAL_ERROR" else 0
 
 
 @handles("cmake_minimum_required", least=2)
-def cmake_minimum_required(run: Interpreter, call: Call, args: list[Word]) -> None:
+def cmake_minimum_required(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_minimum_required(): also sets policies."""
     if args[0].upper() != "VERSION":
         return
@@ -186,7 +188,7 @@ def cmake_minimum_required(run: Interpreter, call: Call, args: list[Word]) -> No
 
 
 @handles("cmake_policy")
-def cmake_policy(run: Interpreter, call: Call, args: list[Word]) -> None:
+def cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_policy(VERSION) and CMP0054."""
     if len(args) >= 2 and args[0] == "VERSION":
         run.minimum_policy = max(run.minimum_policy, version_key(args[1].split("...")[-1]))
@@ -195,16 +197,16 @@ def cmake_policy(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("project", least=1)
-def project(run: Interpreter, call: Call, args: list[Word]) -> None:
+def project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """project()."""
     name = args[0]
     directory = run.scope["CMAKE_CURRENT_SOURCE_DIR"]
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"]
     if not run.project and not run.silent:
         run.project = str(name)
-        run.assign(run.scope, "CMAKE_PROJECT_NAME", Value((name,)))
+        run.assign(run.scope, "CMAKE_PROJECT_NAME", CMakeValue((name,)))
     values = {
-        "PROJECT_NAME": Value((word(str(name), name.at),)),
+        "PROJECT_NAME": CMakeValue((word(str(name), name.at),)),
         "PROJECT_SOURCE_DIR": directory,
         "PROJECT_BINARY_DIR": binary,
         f"{name}_SOURCE_DIR": directory,
@@ -212,16 +214,16 @@ def project(run: Interpreter, call: Call, args: list[Word]) -> None:
     }
     version = following(args, "VERSION")
     if version is not None:
-        values["PROJECT_VERSION"] = values[f"{name}_VERSION"] = Value((version,), version.sure)
+        values["PROJECT_VERSION"] = values[f"{name}_VERSION"] = CMakeValue((version,), version.sure)
         for part, number in zip(("MAJOR", "MINOR", "PATCH", "TWEAK"), version.split("."), strict=False):
-            values[f"PROJECT_VERSION_{part}"] = Value((word(number, version.at),))
+            values[f"PROJECT_VERSION_{part}"] = CMakeValue((word(number, version.at),))
             values[f"{name}_VERSION_{part}"] = values[f"PROJECT_VERSION_{part}"]
     for key, value in values.items():
         run.assign(run.scope, key, value)
 
 
 @handles("cmake_parse_arguments")
-def cmake_parse_arguments(run: Interpreter, call: Call, args: list[Word]) -> None:
+def cmake_parse_arguments(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_parse_arguments() in both signatures."""
     if args and args[0] == "PARSE_ARGV":
         if len(args) < 6:
@@ -261,16 +263,16 @@ def cmake_parse_arguments(run: Interpreter, call: Call, args: list[Word]) -> Non
     for name in keywords:
         found = values.get(name)
         if name in options:
-            state = Value((word("TRUE" if found else "FALSE", call.at),))
+            state = CMakeValue((word("TRUE" if found else "FALSE", call.at),))
         else:
-            state = Value(tuple(found), all(item.sure for item in found)) if found else UNSET
+            state = CMakeValue(tuple(found), all(item.sure for item in found)) if found else UNSET
         run.assign(scope, f"{prefix}_{name}", state)
-    run.assign(scope, f"{prefix}_UNPARSED_ARGUMENTS", Value(tuple(unparsed)) if unparsed else UNSET)
-    run.assign(scope, f"{prefix}_KEYWORDS_MISSING_VALUES", Value(tuple(missing)) if missing else UNSET)
+    run.assign(scope, f"{prefix}_UNPARSED_ARGUMENTS", CMakeValue(tuple(unparsed)) if unparsed else UNSET)
+    run.assign(scope, f"{prefix}_KEYWORDS_MISSING_VALUES", CMakeValue(tuple(missing)) if missing else UNSET)
 
 
 @handles("execute_process", "exec_program", "try_compile", "try_run")
-def execute_process(run: Interpreter, call: Call, args: list[Word]) -> None:
+def execute_process(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Commands that run something: what they answer is not known."""
     if call.name in ("try_compile", "try_run"):
         for name in args[:1]:
@@ -312,7 +314,7 @@ _ANSWERS = name_set(
     "processorcount",
     "test_big_endian",
 )
-def check(run: Interpreter, call: Call, args: list[Word]) -> None:
+def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Compiler checks: the answer is in a variable, and is not known."""
     if call.name in ("processorcount", "test_big_endian"):
         names = args[:1]
@@ -323,14 +325,14 @@ def check(run: Interpreter, call: Call, args: list[Word]) -> None:
     else:
         names = args[-1:]
     for name in names:
-        run.assign(run.scope, str(name), Value((word(f"${{{name}}}", call.at, (), False),), False))
+        run.assign(run.scope, str(name), CMakeValue((word(f"${{{name}}}", call.at, (), False),), False))
 
 
 @handles(
     "get_property", "get_target_property", "get_directory_property", "get_source_file_property", "get_cmake_property",
     least=2,
 )
-def get_property(run: Interpreter, call: Call, args: list[Word]) -> None:
+def get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Properties: those set in the tree are known, all others not."""
     key = _property_key(call.name, args)
     held = run.properties.get(key)
@@ -351,17 +353,17 @@ def _property_key(command: str, args: list[Word]) -> str:
 
 
 @handles("cmake_language")
-def cmake_language(run: Interpreter, call: Call, args: list[Word]) -> int:
+def cmake_language(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """cmake_language(CALL name ...)."""
     if len(args) >= 2 and args[0] == "CALL":
-        from ...facts.cmake import Argument, Command
+        from ...facts.cmake import CMakeArgument, Command
 
         given = tuple(
-            Argument(template.raw, '"' if template.quoted else "", template.at.line, template.at.column)
+            CMakeArgument(template.raw, '"' if template.quoted else "", template.at.line, template.at.column)
             for template in call.templates[2:]
         )
         return run.run_call(
-            Call(Command(args[1].lower(), given, call.at.line, call.at.column, call.at.line), call.path)
+            CommandCall(Command(args[1].lower(), given, call.at.line, call.at.column, call.at.line), call.path)
         )
     if args and args[0] in ("EVAL", "DEFER"):
         run.give_up(call.at, f"cmake_language({args[0]}) is not followed")

@@ -11,7 +11,7 @@ from ...targets.version import at_least
 from .build import At, BuildTarget, Link, for_tests
 
 if TYPE_CHECKING:
-    from ..view import View
+    from ..view import TargetView
     from ..workspace import Package
 
 _OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
@@ -85,7 +85,7 @@ def passed_on_package(link: Link) -> str:
     return package_of(link.item) if "::" in link.item or "$" in link.item else ""
 
 
-def list_found_names(view: View, package: Package) -> set[str] | None:
+def list_found_names(view: TargetView, package: Package) -> set[str] | None:
     """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
     names: set[str] = set()
     for found in package.build.found:
@@ -102,13 +102,13 @@ def list_found_names(view: View, package: Package) -> set[str] | None:
     return names
 
 
-def stops_at_names(view: View) -> bool:
+def stops_at_names(view: TargetView) -> bool:
     """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
     was never true. Source: commit 99d316a of ament_cmake."""
     return at_least(view.target.version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 
-def list_given_names(view: View, package: Package) -> Iterator[tuple[At, str]]:
+def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str]]:
     """Names in ament_target_dependencies and `pkg::target` links that only find_package(pkg) can define."""
     own = {t.name for t in package.build.targets}
     for target in package.build.targets:

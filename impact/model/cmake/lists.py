@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from ...conditions.preprocessor import number_of
-from .blocks import Call
+from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .regex import REGEX_STEPS, usable
 from .standard import note_variable
@@ -14,7 +14,7 @@ from .values import (
     MAX_TEXT,
     MAX_WORDS,
     UNSET,
-    Value,
+    CMakeValue,
     Word,
     position,
     split_list,
@@ -46,7 +46,7 @@ def _raw(text: str) -> list[str]:
 
 
 @handles("list", least=2)
-def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
+def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """list()."""
     action, name, rest = str(args[0]).upper(), str(args[1]), args[2:]
     held = run.get(name)
@@ -70,11 +70,11 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         if len(words) > MAX_WORDS:
             run.give_up(call.at, f"`{name}` has more than {MAX_WORDS} items")
             words = words[:MAX_WORDS]
-        run.assign(run.scope, name, Value(words, sure and all(item.sure for item in added)))
+        run.assign(run.scope, name, CMakeValue(words, sure and all(item.sure for item in added)))
         note_variable(run, name, ";".join(added), args[1])
         return
     if held is None:
-        held = UNSET if run.lookup("", name) is None else Value(())
+        held = UNSET if run.lookup("", name) is None else CMakeValue(())
         known = False
     else:
         known = held.sure
@@ -93,8 +93,8 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         for variable in rest or [None]:
             item = (left.pop() if back else left.pop(0)) if left else None
             if variable is not None:
-                run.assign(run.scope, str(variable), Value((item,), known) if item is not None else UNSET)
-        run.assign(run.scope, name, Value(tuple(left), known))
+                run.assign(run.scope, str(variable), CMakeValue((item,), known) if item is not None else UNSET)
+        run.assign(run.scope, name, CMakeValue(tuple(left), known))
     elif action == "FIND" and len(rest) == 2:
         place = str(words.index(rest[0]) if rest[0] in words else -1)
         run.set_text(rest[1], place if known else None, call.at)
@@ -133,7 +133,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 def _store(run: Interpreter, name: str, words: list[Word], known: bool) -> None:
     """Writes a changed list back; items keep the conditions they had."""
-    run.assign(run.scope, name, Value(tuple(words), known))
+    run.assign(run.scope, name, CMakeValue(tuple(words), known))
 
 
 def _at(words: tuple[Word, ...], index: Word) -> Word | None:
@@ -208,11 +208,11 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
         elif action == "REPLACE" and len(rest) > 2:
             text = _regex_replace(run, rest[1], rest[2], item) or item
         made.append(word(text, item.at, item.conditions, item.sure))
-    run.assign(run.scope, output, Value(tuple(made), known))
+    run.assign(run.scope, output, CMakeValue(tuple(made), known))
 
 
 @handles("string", least=2)
-def string(run: Interpreter, call: Call, args: list[Word]) -> None:
+def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """string()."""
     action, rest = str(args[0]).upper(), args[1:]
     sure = all(item.sure for item in rest)
@@ -338,7 +338,7 @@ _LEADING_ZEROS = re.compile(r"\b0+(?=\d)")
 
 
 @handles("math", least=3)
-def math(run: Interpreter, call: Call, args: list[Word]) -> None:
+def math(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """math(EXPR)."""
     value = calculate(args[2]) if args[2].sure else None
     shown = hex if "HEXADECIMAL" in args[3:] else str
@@ -354,7 +354,7 @@ def calculate(text: str) -> int | None:
 
 
 @handles("separate_arguments")
-def separate_arguments(run: Interpreter, call: Call, args: list[Word]) -> None:
+def separate_arguments(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """separate_arguments()."""
     if len(args) == 1:
         held = run.get(args[0])

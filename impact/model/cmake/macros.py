@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from .build import Defined
+from .build import DefinedMacro
 from .values import Word
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ def note_macro(run: Interpreter, item: Word, target: str) -> None:
     found = _MACRO.match(item)
     if found is not None:
         conditions = tuple(dict.fromkeys((*run.conditions, *item.conditions)))
-        run.macros[Defined(found.group(1), found.group(2) or "", target, conditions)] = None
+        run.macros[DefinedMacro(found.group(1), found.group(2) or "", target, conditions)] = None
 
 
 def note_flag(run: Interpreter, item: Word) -> None:
@@ -35,4 +35,4 @@ def note_flag_macros(run: Interpreter, text: str) -> None:
         before = [m for m in run.macros if m.name == name and not m.target]
         opposite = {(c.text, not c.negated) for c in run.conditions}
         if all(opposite.intersection((c.text, c.negated) for c in m.conditions) for m in before):
-            run.macros[Defined(name, value, "", run.conditions)] = None
+            run.macros[DefinedMacro(name, value, "", run.conditions)] = None

@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import posixpath
 
-from .blocks import Call
+from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .targets import note_made
 from .values import (
     MAX_WORDS,
     UNSET,
-    Value,
+    CMakeValue,
     Word,
     following,
     position,
@@ -20,7 +20,7 @@ from .values import (
 
 
 @handles("get_filename_component", least=3)
-def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> None:
+def get_filename_component(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """get_filename_component()."""
     name, path, mode = args[0], args[1], str(args[2])
     text = str(path)
@@ -46,14 +46,16 @@ def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> No
 
 
 @handles("cmake_path", least=2)
-def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
+def cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_path(), the forms that scripts use."""
     action, name, rest = str(args[0]), str(args[1]), args[2:]
     if action == "SET":
         rest = [item for item in rest if item != "NORMALIZE"]
         if rest:
             text = posixpath.normpath(rest[0]) if "NORMALIZE" in args else str(rest[0])
-            run.assign(run.scope, name, Value((word(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure))
+            run.assign(
+                run.scope, name, CMakeValue((word(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure)
+            )
         return
     held = run.get(name)
     if held is None and action in ("APPEND", "APPEND_STRING"):
@@ -104,7 +106,7 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("file", least=2)
-def file(run: Interpreter, call: Call, args: list[Word]) -> None:
+def file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """file(): GLOB is answered from the tree, paths are computed, everything else is not known."""
     action, rest = str(args[0]).upper(), args[1:]
     if action in ("GLOB", "GLOB_RECURSE"):
@@ -135,7 +137,7 @@ def _write(run: Interpreter, action: str, rest: list[Word]) -> None:
         note_made(run, run.resolve(item), folder=action in ("MAKE_DIRECTORY", "COPY"))
 
 
-def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> None:
+def _glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[Word]) -> None:
     """file(GLOB) and file(GLOB_RECURSE)."""
     name, rest = rest[0], rest[1:]
     start = ""
@@ -165,7 +167,7 @@ def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> No
 
 
 @handles("aux_source_directory", least=2)
-def aux_source_directory(run: Interpreter, call: Call, args: list[Word]) -> None:
+def aux_source_directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """aux_source_directory()."""
     relative = run.relative(run.resolve(args[0]))
     hits = [] if relative is None else run.glob(posixpath.join(relative, "*"), False)
@@ -176,7 +178,7 @@ def aux_source_directory(run: Interpreter, call: Call, args: list[Word]) -> None
 
 
 @handles("configure_file")
-def configure_file(run: Interpreter, call: Call, args: list[Word]) -> None:
+def configure_file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """configure_file(): a generated file."""
     if len(args) >= 2:
         value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")

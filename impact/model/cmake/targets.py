@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from .blocks import Call
+from .blocks import CommandCall
 from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
@@ -12,7 +12,7 @@ from .interpreter import BINARY, Interpreter, handles
 from .macros import note_flag, note_macro
 from .names import name_set
 from .standard import feature_standard, flag_standard, note_options
-from .values import Value, Word, following, position, split_words, word
+from .values import CMakeValue, Word, following, position, split_words, word
 
 _LIBRARY_KINDS = {
     "STATIC": "library",
@@ -28,7 +28,7 @@ _LIBRARY_FLAGS = frozenset({"EXCLUDE_FROM_ALL", "IMPORTED", "GLOBAL", "WITH_SOAB
 @handles("add_library", "cuda_add_library", "rosbuild_add_library", "python_add_library", "python3_add_library",
          "pybind11_add_module", "pybind_add_module", "python_add_module", "ament_python_add_module",
          least=1)  # fmt: skip
-def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_library() in all its signatures, and the modules' variants of it."""
     if _is_alias(run, args):
         return
@@ -53,7 +53,7 @@ def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 @handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable",
          least=1)  # fmt: skip
-def add_executable(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_executable(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_executable() in all its signatures."""
     if _is_alias(run, args):
         return
@@ -80,7 +80,7 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
 
 
 @handles("target_sources", least=1)
-def target_sources(run: Interpreter, call: Call, args: list[Word]) -> None:
+def target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_sources(), FILE_SET forms included."""
     draft = known(run, args[0])
     kept: list[Word] = []
@@ -139,7 +139,7 @@ def add_links(run: Interpreter, draft: TargetDraft, items: list[Word], how: str,
 
 
 @handles("target_link_libraries", "swig_link_libraries")
-def target_link_libraries(run: Interpreter, call: Call, args: list[Word]) -> None:
+def target_link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_link_libraries(), old and new keywords."""
     if args:
         items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
@@ -147,7 +147,7 @@ def target_link_libraries(run: Interpreter, call: Call, args: list[Word]) -> Non
 
 
 @handles("target_include_directories")
-def target_include_directories(run: Interpreter, call: Call, args: list[Word]) -> None:
+def target_include_directories(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_include_directories()."""
     if args:
         items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
@@ -158,7 +158,7 @@ def target_include_directories(run: Interpreter, call: Call, args: list[Word]) -
 
 
 @handles("include_directories")
-def include_directories(run: Interpreter, call: Call, args: list[Word]) -> None:
+def include_directories(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """include_directories()."""
     for item in rejoin(split_words(args)):
         if item in _INCLUDE_FLAGS or run.silent:
@@ -168,7 +168,7 @@ def include_directories(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("link_libraries")
-def link_libraries(run: Interpreter, call: Call, args: list[Word]) -> None:
+def link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """link_libraries(): for every target that follows."""
     for item in rejoin(split_words(args)):
         if item in _LINK_FLAGS or run.silent:
@@ -178,7 +178,7 @@ def link_libraries(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("rosbuild_link_boost", "target_link_boost")
-def link_boost(run: Interpreter, call: Call, args: list[Word]) -> None:
+def link_boost(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosbuild_link_boost(): Boost libraries by component."""
     if args:
         items = [word(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
@@ -186,7 +186,7 @@ def link_boost(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("add_dependencies")
-def add_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_dependencies()."""
     if args:
         add_links(run, known(run, args[0]), split_words(args[1:]), "order")
@@ -207,7 +207,7 @@ def note_written(run: Interpreter, item: Word) -> None:
 
 
 @handles("add_custom_command")
-def add_custom_command(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_custom_command(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_custom_command(): its outputs are made by the build. What is not absolute lies in the build folder, but where
     the command runs in the source folder its outputs are often written as if they lay there too."""
     section = ""
@@ -231,7 +231,7 @@ _OF_CUSTOM_COMMANDS = name_set(
 
 
 @handles("add_custom_target", least=1)
-def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_custom_target()."""
     draft = run.new_target(args[0], "custom", args[0].at)
     section = ""
@@ -251,7 +251,7 @@ def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("target_compile_definitions")
-def target_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -> None:
+def target_compile_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_compile_definitions()."""
     if args:
         draft = known(run, args[0])
@@ -262,7 +262,7 @@ def target_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -
 
 
 @handles("target_compile_options", "target_compile_features")
-def target_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+def target_compile_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_compile_options() and target_compile_features(), of which the C++ standard is kept."""
     if args:
         draft = known(run, args[0])
@@ -275,7 +275,7 @@ def target_compile_options(run: Interpreter, call: Call, args: list[Word]) -> No
 
 
 @handles("add_compile_options", "add_definitions")
-def add_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_compile_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_compile_options() and add_definitions()."""
     note_options(run, args)
     for item in split_words(args):
@@ -283,14 +283,14 @@ def add_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("add_compile_definitions")
-def add_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_compile_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_compile_definitions()."""
     for item in split_words(args):
         note_macro(run, item, "")
 
 
 @handles("set_target_properties")
-def set_target_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
+def set_target_properties(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_target_properties()."""
     if "PROPERTIES" in args:
         split = position(args, "PROPERTIES")
@@ -301,7 +301,7 @@ def set_target_properties(run: Interpreter, call: Call, args: list[Word]) -> Non
 
 
 @handles("set_directory_properties")
-def set_directory_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
+def set_directory_properties(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_directory_properties(PROPERTIES key value ...)."""
     if "PROPERTIES" in args:
         pairs = args[position(args, "PROPERTIES") + 1 :]
@@ -325,7 +325,7 @@ def set_directory_property(run: Interpreter, key: str, values: list[Word]) -> No
 
 
 @handles("set_property")
-def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
+def set_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_property() on targets and folders; others are remembered for get_property()."""
     if "PROPERTY" not in args[:-1]:
         return
@@ -336,20 +336,20 @@ def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
         for name in owners:
             for value in values[:1]:
                 set_target_property(run, name, key, value)
-            run.assign(run.properties, f"TARGET {name} {key}", Value(tuple(values)))
+            run.assign(run.properties, f"TARGET {name} {key}", CMakeValue(tuple(values)))
         return
     if args[0] == "DIRECTORY":
         set_directory_property(run, key, values)
     owner = " ".join([args[0], *owners[:1], key])
     if "APPEND" in args[:split] and owner in run.properties:
         values = [*run.properties[owner].words, *values]
-    run.assign(run.properties, owner, Value(tuple(values)))
+    run.assign(run.properties, owner, CMakeValue(tuple(values)))
 
 
 def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> None:
     """Keeps the properties that matter: the standard, the output name, compile flags, what is linked."""
     draft = run.targets.get(name)
-    run.assign(run.properties, f"TARGET {name} {key}", Value((value,)))
+    run.assign(run.properties, f"TARGET {name} {key}", CMakeValue((value,)))
     if draft is None:
         return
     if key == "CXX_STANDARD":
@@ -370,12 +370,12 @@ def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> 
 
 
 @handles("add_test")
-def add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+def add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_test() makes no target."""
 
 
 @handles("generate_export_header")
-def generate_export_header(run: Interpreter, call: Call, args: list[Word]) -> None:
+def generate_export_header(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_export_header(): a header in the build folder."""
     if args:
         base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
@@ -389,7 +389,7 @@ _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})
 @handles("qt4_wrap_cpp", "qt5_wrap_cpp", "qt6_wrap_cpp", "qt_wrap_cpp", "qt4_wrap_ui", "qt5_wrap_ui", "qt6_wrap_ui",
          "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources",
          least=2)  # fmt: skip
-def qt_wrap(run: Interpreter, call: Call, args: list[Word]) -> None:
+def qt_wrap(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Qt's generators: the variable lists files of the build folder, named as Qt names them."""
     shape = {"cpp": "moc_{}.cpp", "ui": "ui_{}.h"}.get(call.name.rpartition("_")[2], "qrc_{}.cpp")
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
@@ -404,7 +404,7 @@ def qt_wrap(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 @handles("protobuf_generate_cpp", "protobuf_generate_python")
-def protobuf_generate_cpp(run: Interpreter, call: Call, args: list[Word]) -> None:
+def protobuf_generate_cpp(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """protobuf_generate_cpp(SRCS HDRS files...)."""
     outputs = 2 if call.name.endswith("cpp") else 1
     endings = (".pb.cc", ".pb.h") if outputs == 2 else ("_pb2.py",)
@@ -419,7 +419,7 @@ def protobuf_generate_cpp(run: Interpreter, call: Call, args: list[Word]) -> Non
 
 
 @handles("protobuf_generate")
-def protobuf_generate(run: Interpreter, call: Call, args: list[Word]) -> None:
+def protobuf_generate(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """protobuf_generate(TARGET t PROTOS files...)."""
     target = str(following(args, "TARGET") or "")
     files = tuple(run.tree_path(item) for item in args if item.endswith(".proto"))

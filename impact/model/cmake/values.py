@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 
-from ...facts.cmake import Argument
+from ...facts.cmake import CMakeArgument
 from ...facts.condition import Condition
 from .build import At
 
@@ -41,7 +41,7 @@ def word(text: str, at: At, conditions: tuple[Condition, ...] = (), sure: bool =
     return made
 
 
-class Value:
+class CMakeValue:
     """What a variable holds. words is the list view: the union of all branches that wrote it; text is what was written
     last, and chosen its words; sure is False when branches differ or a user may override it; defined is False for a
     variable that is known to be unset."""
@@ -56,22 +56,22 @@ class Value:
         self.defined = defined
 
 
-UNSET = Value((), True, False)
+UNSET = CMakeValue((), True, False)
 
 
-def unsure(value: Value) -> Value:
+def unsure(value: CMakeValue) -> CMakeValue:
     """The same value, not to be relied upon in conditions."""
     if not value.sure:
         return value
-    made = Value(value.words, False, value.defined)
+    made = CMakeValue(value.words, False, value.defined)
     made.chosen = value.chosen
     made.text = value.text
     return made
 
 
-def join(values: Iterable[Value | None]) -> Value | None:
+def join(values: Iterable[CMakeValue | None]) -> CMakeValue | None:
     """One value for what several branches left behind, in order of writing; None stands for never set."""
-    distinct: list[Value | None] = []
+    distinct: list[CMakeValue | None] = []
     for value in values:
         if not any(value is other or _same(value, other) for other in distinct):
             distinct.append(value)
@@ -87,13 +87,13 @@ def join(values: Iterable[Value | None]) -> Value | None:
             if before.conditions != item.conditions:
                 common = tuple(c for c in before.conditions if c in item.conditions)
                 words[item] = word(item, before.at, common, before.sure and item.sure)
-    made = Value(tuple(words.values())[:MAX_WORDS], False)
+    made = CMakeValue(tuple(words.values())[:MAX_WORDS], False)
     made.chosen = known[-1].chosen
     made.text = known[-1].text
     return made
 
 
-def _same(one: Value | None, other: Value | None) -> bool:
+def _same(one: CMakeValue | None, other: CMakeValue | None) -> bool:
     if one is None or other is None:
         return one is other
     return (
@@ -183,7 +183,7 @@ class Template:
 
     __slots__ = ("at", "kind", "name", "parts", "quoted", "raw", "words")
 
-    def __init__(self, argument: Argument, path: str):
+    def __init__(self, argument: CMakeArgument, path: str):
         self.at = at = At(path, argument.line, argument.column)
         self.raw = raw = argument.text
         self.quoted = argument.quoting != ""
@@ -257,7 +257,7 @@ def _parse(raw: str, quoted: bool) -> list:
 
 
 def read_references(
-    parts: tuple, lookup: Callable[[str, str], Value | None], depth: int = 0
+    parts: tuple, lookup: Callable[[str, str], CMakeValue | None], depth: int = 0
 ) -> tuple[str, bool, tuple[Condition, ...]]:
     """Text of a MIXED template, whether it is sure, and the conditions of what went into it. A variable that is not set
     stays as it is written."""

@@ -11,13 +11,13 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...targets.providers.includes import Machine, announced, offered
+from ...targets.providers.includes import HeadersOfMachine, announced, offered
 from ...targets.providers.message_headers import package_of, type_in
 from ...targets.providers.standard import bit_of, named_by, offering, oldest
 
 if TYPE_CHECKING:
     from ..package import NeededHeader
-    from ..view import View
+    from ..view import TargetView
     from ..workspace import Package
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
@@ -48,15 +48,15 @@ class LostHeader(NamedTuple):
 class _Times(NamedTuple):
     """A machine that is asked about and those before it. now: it is the target's."""
 
-    machine: Machine
-    earlier: tuple[Machine, ...]
+    machine: HeadersOfMachine
+    earlier: tuple[HeadersOfMachine, ...]
     now: bool
 
 
 class LostHeaders:
     """The headers that files of one package lack."""
 
-    def __init__(self, view: View, package: Package):
+    def __init__(self, view: TargetView, package: Package):
         self._view = view
         self._package = package
         self._reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
@@ -85,7 +85,9 @@ class LostHeaders:
         return times
 
 
-def _find_lost(view: View, need: NeededHeader, reaches: list[_Reach], year: int, times: _Times) -> LostHeader | None:
+def _find_lost(
+    view: TargetView, need: NeededHeader, reaches: list[_Reach], year: int, times: _Times
+) -> LostHeader | None:
     """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
     ever did. year: of the C++ standard."""
     machine, earlier = times.machine, times.earlier
@@ -129,7 +131,7 @@ def _find_lost(view: View, need: NeededHeader, reaches: list[_Reach], year: int,
     return best
 
 
-def _list_offering(view: View, name: str) -> tuple[str, ...]:
+def _list_offering(view: TargetView, name: str) -> tuple[str, ...]:
     """The headers that offer a name, best first; none for types of interfaces that are the workspace's own, or not
     known on the target."""
     made = type_in(name)
@@ -140,7 +142,7 @@ def _list_offering(view: View, name: str) -> tuple[str, ...]:
 
 
 def _find_owner(
-    name: str, offering: tuple[str, ...], reach: frozenset[str], machine: Machine
+    name: str, offering: tuple[str, ...], reach: frozenset[str], machine: HeadersOfMachine
 ) -> tuple[str, str] | None:
     """Whose a name is that nothing ever brought, and its version: a Boost library's, where a file includes some of its
     headers, or an interface's."""
@@ -154,7 +156,11 @@ def _find_owner(
 
 
 def _find_dropped(
-    view: View, wanted: frozenset[str], reach: frozenset[str], machine: Machine, earlier: tuple[Machine, ...]
+    view: TargetView,
+    wanted: frozenset[str],
+    reach: frozenset[str],
+    machine: HeadersOfMachine,
+    earlier: tuple[HeadersOfMachine, ...],
 ) -> tuple[str, str] | None:
     """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
     for before in earlier:
@@ -167,7 +173,12 @@ def _find_dropped(
 
 
 def _find_dropped_name(
-    view: View, name: str, reach: frozenset[str], year: int, machine: Machine, earlier: tuple[Machine, ...]
+    view: TargetView,
+    name: str,
+    reach: frozenset[str],
+    year: int,
+    machine: HeadersOfMachine,
+    earlier: tuple[HeadersOfMachine, ...],
 ) -> tuple[str, str] | None:
     """The same for a name of the standard libraries."""
     for before in earlier:
@@ -183,7 +194,7 @@ def _find_dropped_name(
     return None
 
 
-def _list_outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
+def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: HeadersOfMachine) -> list[str] | None:
     """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name.
 
     Any that the file itself includes may bring a name of the standard library; one whose package depends on the name's

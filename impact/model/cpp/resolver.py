@@ -11,12 +11,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from ...facts.cpp.code import Code
+from ...facts.cpp.code import CppCode
 from ...facts.cpp.names import split_at_commas, without_templates
-from ...facts.cpp.schema import Class, Declared, Expr, Place
+from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
 from ..api import Vocabulary
-from ..members import Interface, Scope, section_of
-from ..members import Type as InterfaceType
+from ..members import InterfaceScope, NamedInterface, section_of
+from ..members import MemberType as InterfaceType
 
 _POINTERS = frozenset(("shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr", "optional", "unique_lock"))
 _MAKERS = frozenset(("make_shared", "make_unique", "allocate_shared"))
@@ -33,7 +33,7 @@ _QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|sta
 _DEEPEST = 8
 
 
-class Type(NamedTuple):
+class CppType(NamedTuple):
     """What an expression is. name: the full name of a class, of the package itself (own) or another; empty for an
     interface, which is then given with its section, or for a map (values). pointer: members are reached by `->`.
     several: a sequence of them. arguments: template arguments as written."""
@@ -42,10 +42,10 @@ class Type(NamedTuple):
     own: bool = False
     pointer: bool = False
     several: bool = False
-    interface: Interface | None = None
+    interface: NamedInterface | None = None
     section: str = ""
     arguments: tuple[str, ...] = ()
-    values: Type | None = None
+    values: CppType | None = None
 
     @property
     def plain(self) -> bool:
@@ -95,11 +95,11 @@ def parse_type(text: str) -> Written:
     return Written("".join(text[:opened].split()), inner, tail, pointer, array)
 
 
-class Known:
+class KnownFile:
     """What one file declares, by the last parts of the names. Kept with the file, for all that include it. words: all
     of four letters or more that stand in it, where that is known."""
 
-    def __init__(self, code: Code, words: frozenset[str] = frozenset()):
+    def __init__(self, code: CppCode, words: frozenset[str] = frozenset()):
         self.code, self.words = code, words
 
     def mentions(self, word: str) -> bool:
@@ -107,14 +107,14 @@ class Known:
         return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
 
     @cached_property
-    def classes(self) -> dict[str, list[Class]]:
+    def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""
         return _by_last(self.code.file.classes)
 
     @cached_property
-    def names(self) -> dict[str, list[Declared]]:
+    def names(self) -> dict[str, list[Declaration]]:
         """What it declares outside of classes and functions."""
-        found: dict[str, list[Declared]] = {}
+        found: dict[str, list[Declaration]] = {}
         for one in self.code.file.names:
             found.setdefault(one.name, []).append(one)
         return found
@@ -129,20 +129,20 @@ class Known:
         """Names that it declares in any way, outside of functions."""
         return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
 
-    def aliases(self, name: str) -> Iterator[Declared]:
+    def aliases(self, name: str) -> Iterator[Declaration]:
         """What a name stands for, outside of classes."""
         if self.mentions(name) and name in self.code.like_aliases:
             yield from (one for one in self.names.get(name, ()) if one.kind == "alias")
 
-    def classes_named(self, last: str) -> list[Class]:
+    def classes_named(self, last: str) -> list[CppClass]:
         """Its classes of a name."""
         if self.mentions(last) and last in self.code.like_classes:
             return self.classes.get(last, [])
         return []
 
 
-def _by_last(classes: Iterable[Class]) -> dict[str, list[Class]]:
-    found: dict[str, list[Class]] = {}
+def _by_last(classes: Iterable[CppClass]) -> dict[str, list[CppClass]]:
+    found: dict[str, list[CppClass]] = {}
     for one in classes:
         if not one.specialised:
             found.setdefault(one.name.rpartition("::")[2], []).append(one)
@@ -153,24 +153,24 @@ class Resolver:
     """Resolves what one file writes, with the headers of the package that it reaches. files: the file and these
     headers, none for what stands in headers of other packages."""
 
-    def __init__(self, files: Sequence[Known], vocabulary: Vocabulary | None, scope: Scope | None):
+    def __init__(self, files: Sequence[KnownFile], vocabulary: Vocabulary | None, scope: InterfaceScope | None):
         self.files = tuple(files)
         self.vocabulary, self.scope = vocabulary, scope
-        self._types: dict[tuple[str, str, str], Type | None] = {}
-        self._named: dict[tuple[str, str, str], Type | None] = {}
-        self._homes: dict[str, list[Class]] = {}
-        self._lines: dict[str, tuple[Class, ...]] = {}
+        self._types: dict[tuple[str, str, str], CppType | None] = {}
+        self._named: dict[tuple[str, str, str], CppType | None] = {}
+        self._homes: dict[str, list[CppClass]] = {}
+        self._lines: dict[str, tuple[CppClass, ...]] = {}
         self._opened: tuple[str, ...] | None = None
         self._renamed: dict[str, tuple[str, ...]] = {}
 
     @property
-    def known(self) -> Known:
+    def known(self) -> KnownFile:
         """The file itself."""
         return self.files[0]
 
     # -- names ---------------------------------------------------------------------------------------------------------
 
-    def meanings(self, name: str, place: Place) -> Iterator[str]:
+    def meanings(self, name: str, place: CodePlace) -> Iterator[str]:
         """The full names that a name as written can stand for, nearest first."""
         around = place.scope
         while around:
@@ -203,7 +203,7 @@ class Resolver:
             known = self._renamed[head] = tuple(dict.fromkeys(found))
         return known
 
-    def opened(self, place: Place) -> tuple[str, ...]:
+    def opened(self, place: CodePlace) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
         if self._opened is None:
             self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.code.opened))
@@ -213,7 +213,7 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
-    def homes(self, class_: str) -> list[Class]:
+    def homes(self, class_: str) -> list[CppClass]:
         """The classes of the package that a name can be: those of that full name, else those that end so."""
         known = self._homes.get(class_)
         if known is None:
@@ -230,7 +230,7 @@ class Resolver:
 
     # -- types ---------------------------------------------------------------------------------------------------------
 
-    def type_of(self, written: str, place: Place, depth: int = 0) -> Type | None:
+    def type_of(self, written: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """What a type as written is; None where it is nothing that is known."""
         key = written, place.scope, place.owner
         if key in self._types:
@@ -241,7 +241,7 @@ class Resolver:
         found = self._types[key] = self._type_of(written, place, depth)
         return found
 
-    def _type_of(self, written: str, place: Place, depth: int) -> Type | None:
+    def _type_of(self, written: str, place: CodePlace, depth: int) -> CppType | None:
         parts = parse_type(written)
         if not parts.outer:
             return None
@@ -253,7 +253,7 @@ class Resolver:
                 found = inner._replace(pointer=True) if last in _POINTERS else inner._replace(several=True)
         elif parts.arguments is not None and not parts.tail and last in _MAPS and len(parts.arguments) > 1:
             inner = self.type_of(parts.arguments[1], place, depth + 1)
-            found = Type("", values=inner) if inner is not None else None
+            found = CppType("", values=inner) if inner is not None else None
         else:
             name = f"{parts.outer}::{parts.tail}" if parts.tail else parts.outer
             found = self.named(name, place, depth)
@@ -265,7 +265,7 @@ class Resolver:
             found = found._replace(several=True)
         return found._replace(pointer=True) if parts.pointer else found
 
-    def named(self, name: str, place: Place, depth: int = 0) -> Type | None:
+    def named(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """The class that a name without template arguments is."""
         key = name, place.scope, place.owner
         if key in self._named:
@@ -274,7 +274,7 @@ class Resolver:
         found = self._named[key] = self._find_named(name, place, depth)
         return found
 
-    def _find_named(self, name: str, place: Place, depth: int) -> Type | None:
+    def _find_named(self, name: str, place: CodePlace, depth: int) -> CppType | None:
         if depth > _DEEPEST or name == "std" or name.startswith("std::"):
             return None
         head, _, rest = name.partition("::")
@@ -296,13 +296,13 @@ class Resolver:
         meanings = list(dict.fromkeys(self.meanings(name, place)))
         for file in self.files:
             for alias in file.aliases(head):
-                inner = self.type_of(alias.type, Place(alias.scope, "", False), depth + 1)
+                inner = self.type_of(alias.type, CodePlace(alias.scope, "", False), depth + 1)
                 if inner is not None or not rest:
                     return self._nested(inner, rest, place, depth)
         if self.vocabulary is not None:
             for full in meanings:
                 if full in self.vocabulary.classes:
-                    return Type(full)
+                    return CppType(full)
         if self.scope is not None:
             for full in meanings:
                 told = self._interface(full)
@@ -336,7 +336,7 @@ class Resolver:
         }
         return next(iter(found)) if len(found) == 1 else None
 
-    def _nested(self, type_: Type | None, rest: str, place: Place, depth: int) -> Type | None:
+    def _nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
         """What `alias::rest` is."""
         if type_ is None or not rest:
             return type_
@@ -344,7 +344,7 @@ class Resolver:
             return self._section(type_, rest.split("::"))
         return self.named(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
 
-    def _own_class(self, name: str, place: Place) -> Type | None:
+    def _own_class(self, name: str, place: CodePlace) -> CppType | None:
         last = name.rpartition("::")[2]
         names = {one.name for one in self.homes(last)}
         if not names:
@@ -353,20 +353,20 @@ class Resolver:
         while True:
             full = f"{around}::{name}" if around else name
             if full in names:
-                return Type(full, own=True)
+                return CppType(full, own=True)
             if not around:
                 break
             around = around.rpartition("::")[0]
         for full in self.meanings(name, place):
             if full in names:
-                return Type(full, own=True)
+                return CppType(full, own=True)
         if "::" not in name:
-            return Type(name, own=True)
+            return CppType(name, own=True)
         ending = f"::{name}"
         found = [full for full in names if full.endswith(ending)]
-        return Type(found[0], own=True) if len(found) == 1 else None
+        return CppType(found[0], own=True) if len(found) == 1 else None
 
-    def _interface(self, name: str) -> Type | None:
+    def _interface(self, name: str) -> CppType | None:
         """The interface that a qualified name is; only one may be meant."""
         assert self.scope is not None
         parts = name.split("::")
@@ -377,10 +377,10 @@ class Resolver:
             pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or told[2]
             section = section_of(told[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
             if section is not None:
-                return Type("", pointer=pointer, interface=told[0], section=section)
+                return CppType("", pointer=pointer, interface=told[0], section=section)
         return None
 
-    def _plain_interface(self, parts: list[str]) -> tuple[Interface, str, bool] | None:
+    def _plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
         assert self.scope is not None
         *outer, name = parts
         for spelt in (name, name.removesuffix("Ptr"), name.removesuffix("ConstPtr")):
@@ -396,7 +396,7 @@ class Resolver:
                 return *meant[0], spelt != name
         return None
 
-    def _section(self, type_: Type, words: list[str]) -> Type | None:
+    def _section(self, type_: CppType, words: list[str]) -> CppType | None:
         assert type_.interface is not None
         pointer = type_.pointer or any(_POINTED.fullmatch(word) for word in words)
         told = type_.interface, type_.section
@@ -405,7 +405,7 @@ class Resolver:
 
     # -- classes of the package ----------------------------------------------------------------------------------------
 
-    def line_of_own(self, class_: str) -> tuple[Class, ...]:
+    def line_of_own(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
         written where their parameters stood."""
         known = self._lines.get(class_)
@@ -414,7 +414,7 @@ class Resolver:
             known = self._lines[class_] = tuple(self._find_line(class_, (), 0))
         return known
 
-    def _find_line(self, class_: str, arguments: tuple[str, ...], depth: int) -> Iterator[Class]:
+    def _find_line(self, class_: str, arguments: tuple[str, ...], depth: int) -> Iterator[CppClass]:
         homes = self.homes(class_)
         if len(homes) != 1 or depth > _DEEPEST:
             return
@@ -426,7 +426,7 @@ class Resolver:
             if own is not None and own.name != one.name:
                 yield from self._find_line(own.name, parts.arguments or (), depth + 1)
 
-    def bases(self, class_: Class) -> list[tuple[str, Type | None]]:
+    def bases(self, class_: CppClass) -> list[tuple[str, CppType | None]]:
         """The bases of a class of the package, with what they are."""
         return [(base, self.type_of(base, _around(class_))) for base in class_.bases]
 
@@ -449,7 +449,7 @@ class Resolver:
             return found[0], (*found[1], "")
         return found
 
-    def known_bases(self, base: str, place: Place, depth: int = 0) -> list[str]:
+    def known_bases(self, base: str, place: CodePlace, depth: int = 0) -> list[str]:
         """The classes of other packages that a base stands for, or is derived from."""
         type_ = self.type_of(base, place)
         if type_ is None or depth > _DEEPEST or not type_.name:
@@ -465,7 +465,7 @@ class Resolver:
 
     # -- expressions ---------------------------------------------------------------------------------------------------
 
-    def value_of(self, expr: Expr, place: Place, depth: int = 0) -> Type | None:
+    def value_of(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
         """What an expression is."""
         if depth > 4 * _DEEPEST:
             return None
@@ -488,7 +488,7 @@ class Resolver:
             type_ = self.value_of(expr.parts[0], place, depth + 1)
             return type_._replace(pointer=True) if type_ is not None and type_.plain else None
         if kind == "this":
-            return Type(place.owner, own=True, pointer=True) if place.owner else None
+            return CppType(place.owner, own=True, pointer=True) if place.owner else None
         if kind in ("new", "cast", "braces") and expr.text:
             type_ = self.type_of(expr.text, place)
             return type_._replace(pointer=True) if type_ is not None and kind == "new" else type_
@@ -497,7 +497,7 @@ class Resolver:
             return one if one == other else None
         return None
 
-    def _of_name(self, expr: Expr, place: Place, depth: int) -> Type | None:
+    def _of_name(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         local = expr.local
         if local is None:
             return None if "::" in expr.text else self._variable(expr.text, place)
@@ -515,7 +515,7 @@ class Resolver:
             return type_._replace(several=False) if type_ is not None and type_.several else None
         return None
 
-    def _variable(self, name: str, place: Place) -> Type | None:
+    def _variable(self, name: str, place: CodePlace) -> CppType | None:
         """What a name is that no function declares: a member of the class around, or a variable outside of all."""
         if place.owner:
             for one in self.line_of_own(place.owner):
@@ -525,7 +525,7 @@ class Resolver:
             if inherited is not None:
                 return inherited
         found = [
-            self.type_of(one.type, Place(one.scope, "", False))
+            self.type_of(one.type, CodePlace(one.scope, "", False))
             for file in self.files
             if file.mentions(name)
             for one in file.names.get(name, ())
@@ -533,13 +533,13 @@ class Resolver:
         ]
         return found[0] if found and all(one == found[0] for one in found) else None
 
-    def _declared_type(self, those: Iterable[Declared], place: Place, kind: str) -> Type | None:
+    def _declared_type(self, those: Iterable[Declaration], place: CodePlace, kind: str) -> CppType | None:
         """What several declarations of one name give, where they agree."""
         found = {self.type_of(one.type, place) if one.type and "auto" not in one.type else None
                  for one in those if one.kind == kind}  # fmt: skip
         return next(iter(found)) if len(found) == 1 else None
 
-    def _of_member(self, expr: Expr, place: Place, depth: int, called: bool = False) -> Type | None:
+    def _of_member(self, expr: Expr, place: CodePlace, depth: int, called: bool = False) -> CppType | None:
         type_ = self.value_of(expr.parts[0], place, depth + 1)
         if type_ is None:
             return None
@@ -553,13 +553,13 @@ class Resolver:
             return None
         return self.step(type_, expr.text, place, called)
 
-    def step(self, type_: Type, name: str, place: Place, called: bool) -> Type | None:
+    def step(self, type_: CppType, name: str, place: CodePlace, called: bool) -> CppType | None:
         """What a member of an object is."""
         if type_.interface is not None:
             if called or self.scope is None:
                 return None
             found = self.scope.step(type_.of_interface(), name)
-            return None if found is None else Type("", several=found.several, interface=found.interface,
+            return None if found is None else CppType("", several=found.several, interface=found.interface,
                                                    section=found.section)  # fmt: skip
         kind = "function" if called else "variable"
         if not type_.own:
@@ -573,26 +573,28 @@ class Resolver:
                 return found
         return self._inherited(type_.name, name, kind)
 
-    def _inherited(self, class_: str, name: str, kind: str) -> Type | None:
+    def _inherited(self, class_: str, name: str, kind: str) -> CppType | None:
         """What a member is that a class of the package has of its one base of other packages."""
         bases = [type_ for one in self.line_of_own(class_) for _, type_ in self.bases(one)]
         others = [type_ for type_ in bases if type_ is None or not type_.own]
         return self._released(others[0].name, name, kind) if len(others) == 1 and others[0] is not None else None
 
-    def _released(self, class_: str, name: str, kind: str) -> Type | None:
+    def _released(self, class_: str, name: str, kind: str) -> CppType | None:
         """What a member of a class of other packages is, or gives back, in the versions that are asked about."""
         if self.vocabulary is None or not class_:
             return None
         around, types = self.vocabulary.types_of(class_, name, kind)
         elsewhere = Resolver((), self.vocabulary, None)
-        found = {elsewhere.type_of(each, Place(around, "", False)) for each in types}
+        found = {elsewhere.type_of(each, CodePlace(around, "", False)) for each in types}
         return next(iter(found)) if len(found) == 1 else None
 
-    def _substituted(self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: Place):
+    def _substituted(
+        self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: CodePlace
+    ):
         """A type that is written with the parameters of a template."""
         return self.type_of(_filled_text(written.pop(), parameters, arguments), place) if len(written) == 1 else None
 
-    def _of_call(self, expr: Expr, place: Place, depth: int) -> Type | None:
+    def _of_call(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         callee = expr.parts[0]
         if callee.kind == "member":
             return self._of_member(callee, place, depth, called=True)
@@ -617,14 +619,14 @@ class Resolver:
             type_ = self.named(outer, place)
             return type_._replace(pointer=True) if type_ is not None else None
         if last in ("shared_from_this", "weak_from_this") and not outer:
-            return Type(place.owner, own=True, pointer=True) if place.owner else None
+            return CppType(place.owner, own=True, pointer=True) if place.owner else None
         written = f"{name}<{', '.join(callee.template)}>" if callee.template else name
         type_ = self.type_of(written, place)
         if type_ is not None and not type_.pointer:
             return type_
         return self._result(name, place)
 
-    def _result(self, name: str, place: Place) -> Type | None:
+    def _result(self, name: str, place: CodePlace) -> CppType | None:
         """What a function gives back."""
         if "::" not in name and place.owner:
             for one in self.line_of_own(place.owner):
@@ -639,7 +641,7 @@ class Resolver:
             if class_ is not None and class_.name:
                 return self.step(class_._replace(pointer=False), last, place, True)
         found = {
-            self.type_of(one.type, Place(one.scope, "", False)) if "auto" not in one.type else None
+            self.type_of(one.type, CodePlace(one.scope, "", False)) if "auto" not in one.type else None
             for file in self.files
             if file.mentions(last)
             for one in file.names.get(last, ())
@@ -650,7 +652,7 @@ class Resolver:
         return None
 
 
-_NOWHERE = Place("", "", False)
+_NOWHERE = CodePlace("", "", False)
 
 
 def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
@@ -661,7 +663,7 @@ def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str])
     return text
 
 
-def _filled(class_: Class, arguments: tuple[str, ...]) -> Class:
+def _filled(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
     """A class with the arguments of its template in the places of the parameters."""
     members = {
         name: [one._replace(type=_filled_text(one.type, class_.template, arguments)) for one in those]
@@ -671,10 +673,10 @@ def _filled(class_: Class, arguments: tuple[str, ...]) -> Class:
     return class_._replace(members=members, bases=bases)
 
 
-def _inside(class_: Class) -> Place:
-    return Place(class_.name, class_.name, False)
+def _inside(class_: CppClass) -> CodePlace:
+    return CodePlace(class_.name, class_.name, False)
 
 
-def _around(class_: Class) -> Place:
+def _around(class_: CppClass) -> CodePlace:
     """Where the bases of a class are written."""
-    return Place(class_.name.rpartition("::")[0], "", False)
+    return CodePlace(class_.name.rpartition("::")[0], "", False)

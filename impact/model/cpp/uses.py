@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator
 
-from ...facts.cpp.schema import Class, Expr, Parameter, Place
-from ...facts.cpp.schema import Use as Written
+from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
+from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import template_arguments
-from ..api import ASSIGNING, CALLED, CLASSES, Found, Name
-from ..members import Found as FoundMember
-from .resolver import Known, Resolver, Type
+from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
+from ..members import FoundField as FoundMember
+from .resolver import CppType, KnownFile, Resolver
 
 _LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
 _SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
@@ -41,7 +41,7 @@ class ApiUses:
         self.vocabulary = resolver.vocabulary
         self.unresolved: set[int] = set()
 
-    def found(self, words: Iterable[str]) -> Iterator[Found]:
+    def found(self, words: Iterable[str]) -> Iterator[FoundName]:
         """Every use of a name that is looked for and whose last part is among the words."""
         words = list(words)
         home = self.vocabulary.home
@@ -91,12 +91,12 @@ class ApiUses:
         names = (self.vocabulary.names[name] for name in self.vocabulary.by_last(word))
         return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in names)
 
-    def _differs(self, found: Found) -> bool:
+    def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
 
     # -- one place -----------------------------------------------------------------------------------------------------
 
-    def _use(self, use: Written) -> Found | None:
+    def _use(self, use: Written) -> FoundName | None:
         if use.form == "member":
             return self._of_object(use)
         if use.form == "scoped":
@@ -108,7 +108,7 @@ class ApiUses:
             return self._member(type_, use) if type_ is not None and type_.plain else None
         return None
 
-    def _of_object(self, use: Written) -> Found | None:
+    def _of_object(self, use: Written) -> FoundName | None:
         assert use.object is not None
         if use.object.kind == "this":
             return self._of_this(use)
@@ -119,7 +119,7 @@ class ApiUses:
             return None
         return self._member(type_, use) if not type_.several and type_.pointer == use.arrow else None
 
-    def _member(self, type_: Type, use: Written) -> Found | None:
+    def _member(self, type_: CppType, use: Written) -> FoundName | None:
         if not type_.name:
             return None
         if type_.own:
@@ -127,11 +127,11 @@ class ApiUses:
         member = self.vocabulary.member(type_.name, use.word)
         return None if member is None else self._found(member[0], use, True, member[1])
 
-    def _of_own(self, class_: str, use: Written) -> Found | None:
+    def _of_own(self, class_: str, use: Written) -> FoundName | None:
         member = self.resolver.own_member(class_, use.word)
         return None if member is None else self._found(member[0], use, "" not in member[1], member[1])
 
-    def _in_scope(self, use: Written) -> Found | None:
+    def _in_scope(self, use: Written) -> FoundName | None:
         """`scope::word`."""
         scope = use.name.rpartition("::")[0]
         if scope == "std" or scope.startswith("std::"):
@@ -146,7 +146,7 @@ class ApiUses:
         member = self.vocabulary.member(type_.name, use.word)
         return None if member is None else self._found(member[0], use, True, member[1])
 
-    def _bare(self, use: Written) -> Found | None:
+    def _bare(self, use: Written) -> FoundName | None:
         names, word = self.vocabulary.names, use.word
         if use.local is not None:
             return None
@@ -171,7 +171,7 @@ class ApiUses:
                 return self._found(full, use, False, ())
         return None
 
-    def _spaces(self, place: Place) -> Iterator[str]:
+    def _spaces(self, place: CodePlace) -> Iterator[str]:
         """The namespaces around a place."""
         around = place.scope
         while around:
@@ -204,13 +204,13 @@ class ApiUses:
             and not self.resolver.declares(word)
         )
 
-    def _of_this(self, use: Written) -> Found | None:
+    def _of_this(self, use: Written) -> FoundName | None:
         """A member of the class around a place that one of its bases in another package has."""
         if not use.place.owner or not self.vocabulary.of_classes(use.word):
             return None
         return self._of_own(use.place.owner, use)
 
-    def _construction(self, use: Written) -> Found | None:
+    def _construction(self, use: Written) -> FoundName | None:
         """A constructor that is called where the name of its class stands."""
         if use.call is None or not use.last or use.form in ("member", "assigned") or use.local is not None:
             return None
@@ -224,17 +224,17 @@ class ApiUses:
             return None
         name = f"{type_.name}::{use.word}"
         count, given = self._given(use)
-        return Found(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
+        return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
 
-    def _found(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> Found:
+    def _found(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
         """The use that a name at a place is."""
         known = self.vocabulary.names[name]
         how, count, given = "name", -1, ()
         if known.what in CALLED and use.call is not None and not use.made:
             how = "call"
             count, given = self._given(use)
-        return Found(known.package, name, use.offset, how, count, given, use.template is not None, sure, through)
+        return FoundName(known.package, name, use.offset, how, count, given, use.template is not None, sure, through)
 
     def _given(self, use: Written) -> tuple[int, tuple[str, ...]]:
         """How many arguments a call gives (-1: not to be told), and what each shows itself to be."""
@@ -243,7 +243,7 @@ class ApiUses:
             return -1, ()
         return len(call), tuple(self.shown(argument, use.place) for argument in call)
 
-    def shown(self, argument: Expr, place: Place) -> str:
+    def shown(self, argument: Expr, place: CodePlace) -> str:
         """What an argument shows itself to be: `text`, `float`, `integer`, `bool`, `lambda`, `bind`, `null`, `this`,
         `*this`, `new`, `qos` (an rclcpp::QoS) or `profile` (an rmw_qos_profile_t); empty for the rest."""
         kind = argument.kind
@@ -274,7 +274,7 @@ class ApiUses:
 
     # -- overrides -----------------------------------------------------------------------------------------------------
 
-    def _overrides(self, words: frozenset[str]) -> Iterator[Found]:
+    def _overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
@@ -296,10 +296,10 @@ class ApiUses:
                         marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
                         if "final" in method.traits and "override" not in marks:
                             marks = (*marks, "override")
-                        yield Found(names[member[0]].package, member[0], method.offset, "override", len(types),
+                        yield FoundName(names[member[0]].package, member[0], method.offset, "override", len(types),
                                     (*types, *marks), False, True, member[1])  # fmt: skip
 
-    def unimplemented(self, exported: Collection[str]) -> Iterator[Found]:
+    def unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
         """Methods that a base class in another package makes others implement in some version, and that an exported
         class of the file does not have. exported: full names of classes that others make objects of."""
         code = self.resolver.known.code
@@ -320,13 +320,13 @@ class ApiUses:
                     for name in self.vocabulary.pure(type_.name):
                         package = self.vocabulary.names[name].package
                         if name.rpartition("::")[2] not in have and package not in self.vocabulary.home:
-                            yield Found(package, name, class_.offset, "implement", -1, (), False, True, ())
+                            yield FoundName(package, name, class_.offset, "implement", -1, (), False, True, ())
 
     def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
 
 
-def _may_differ(known: Name, text: str, at: int) -> bool:
+def _may_differ(known: ChangingName, text: str, at: int) -> bool:
     """Whether what follows a name may call it in a way that not all versions take."""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     templated = text.startswith("<", opened)
@@ -394,12 +394,12 @@ def _is_among(class_: str, names: Collection[str]) -> bool:
     return any(f"::{class_}".endswith(f"::{name}") for name in names)
 
 
-def around_(class_: Class) -> Place:
+def around_(class_: CppClass) -> CodePlace:
     """Where the bases of a class are written."""
-    return Place(class_.name.rpartition("::")[0], "", False)
+    return CodePlace(class_.name.rpartition("::")[0], "", False)
 
 
-def parameter_type(parameter: Parameter | str) -> str:
+def parameter_type(parameter: WrittenParameter | str) -> str:
     """The type of a parameter in the form that surfaces have."""
     text = parameter if isinstance(parameter, str) else parameter.type
     return " ".join(re.sub(r"\s*([<>,&*:]+)\s*", r"\1", text).split())
@@ -464,6 +464,6 @@ class MemberUses:
         return FoundMember(type_.interface, type_.section, use.word, use.offset, True)
 
 
-def _members(file: Known, name: str):
+def _members(file: KnownFile, name: str):
     return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]
 

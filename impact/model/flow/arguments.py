@@ -9,8 +9,8 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from ...facts.flow import Call, Expr
-from .code import Code, Fn, Variable, around, is_number, tail
+from ...facts.flow import FlowCall, FlowExpr
+from .code import FlowCode, Fn, Variable, around, is_number, tail
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
@@ -23,11 +23,11 @@ _DEEPEST = 5
 class CommandLine:
     """Which expressions of a body of code are the command line, or of it."""
 
-    def __init__(self, code: Code):
+    def __init__(self, code: FlowCode):
         self.code = code
         self._parsers: dict[Variable, list[tuple[tuple[str, ...], dict[str, object]]] | None] = {}
 
-    def start(self, value: Expr, fn: Fn, depth: int = 0) -> int | None:
+    def start(self, value: FlowExpr, fn: Fn, depth: int = 0) -> int | None:
         """The place in argv at which the list that an expression is begins: 0 for argv itself; None for other lists."""
         if depth > _DEEPEST:
             return None
@@ -60,16 +60,16 @@ class CommandLine:
         return None
 
     @cached_property
-    def _copies(self) -> dict[int, list[Call]]:
+    def _copies(self) -> dict[int, list[FlowCall]]:
         """Calls that put a copy of argv into their third argument, by the id() of the function they stand in."""
-        found: dict[int, list[Call]] = {}
+        found: dict[int, list[FlowCall]] = {}
         for fn in self.code.functions:
             for call in fn.facts.calls:
                 if len(call.arguments) == 3 and tail(call.callee) in _COPIES:
                     found.setdefault(id(fn), []).append(call)
         return found
 
-    def places(self, container: Expr, index: Expr, fn: Fn) -> range | None:
+    def places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:
         """The places of argv that an element may be of, None for what is no element of it; open ended where the index
         is not a number."""
         begun = self.start(container, fn)
@@ -131,7 +131,7 @@ class CommandLine:
             yield names, {key: value for key, value in told.items() if key in kept and value is not None}
 
 
-def _literal(value: Expr) -> object:
+def _literal(value: FlowExpr) -> object:
     if value.kind == "text":
         return value.text
     if value.kind == "number":

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.cpp.names import split_at_commas
-from ...facts.flow import Call, Expr
-from .code import Code, Fn, Variable, around, parts_of, tail
-from .frameworks import Frameworks, Row, Spot
-from .types import Type, parsed
+from ...facts.flow import FlowCall, FlowExpr
+from .code import FlowCode, Fn, Variable, around, parts_of, tail
+from .frameworks import FrameworkRow, Frameworks, Spot
+from .types import FlowType, parsed
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(
@@ -19,30 +19,30 @@ _COMMON = frozenset(
 )  # fmt: skip
 
 
-class Use(NamedTuple):
+class FrameworkCall(NamedTuple):
     """A call, or an object that is made, that a row describes. call: with the arguments; for an object a call of its
     constructor. sure: False where only the name tells."""
 
     fn: Fn
-    row: Row
-    call: Call
+    row: FrameworkRow
+    call: FlowCall
     sure: bool = True
 
 
 class Calls:
     """All uses of frameworks in a body of code."""
 
-    def __init__(self, code: Code, table: Frameworks):
+    def __init__(self, code: FlowCode, table: Frameworks):
         self.code, self.table = code, table
-        self._kinds: dict[Type, frozenset[str]] = {}
-        self._uses: dict[int, Use | None] = {}
-        self._objects_of: dict[tuple[str, str], list[Row]] = {}
+        self._kinds: dict[FlowType, frozenset[str]] = {}
+        self._uses: dict[int, FrameworkCall | None] = {}
+        self._objects_of: dict[tuple[str, str], list[FrameworkRow]] = {}
         self._makers: dict[int, tuple[Fn | None, list[Fn]]] = {}
 
     @cached_property
-    def uses(self) -> list[Use]:
+    def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
-        found: list[Use] = []
+        found: list[FrameworkCall] = []
         for fn in self.code.functions:
             for call in fn.facts.calls:
                 use = self.use_of(fn, call)
@@ -52,7 +52,7 @@ class Calls:
         found.sort(key=lambda use: (use.fn.source.path, use.call.line, use.call.column))
         return found
 
-    def kinds_of(self, kind: Type, fn: Fn) -> frozenset[str]:
+    def kinds_of(self, kind: FlowType, fn: Fn) -> frozenset[str]:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""
         if not kind.name:
             return frozenset()
@@ -67,9 +67,9 @@ class Calls:
 
     def own_kinds(self, fn: Fn) -> frozenset[str]:
         """Kinds of the class that a function belongs to."""
-        return self.kinds_of(Type(fn.facts.owner), fn) if fn.facts.owner else frozenset()
+        return self.kinds_of(FlowType(fn.facts.owner), fn) if fn.facts.owner else frozenset()
 
-    def use_of(self, fn: Fn, call: Call) -> Use | None:
+    def use_of(self, fn: Fn, call: FlowCall) -> FrameworkCall | None:
         """The use that a call is, None when no row describes it."""
         rows = self.table.calls.get(tail(call.callee))
         if not rows:
@@ -79,7 +79,7 @@ class Calls:
             self._uses[key] = self._find_use(fn, call, rows)
         return self._uses[key]
 
-    def _find_use(self, fn: Fn, call: Call, rows: list[Row]) -> Use | None:
+    def _find_use(self, fn: Fn, call: FlowCall, rows: list[FrameworkRow]) -> FrameworkCall | None:
         language = fn.source.facts.language
         receiver, kinds, free = self._receiver(fn, call)
         weak = None
@@ -90,22 +90,22 @@ class Calls:
                 continue
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
-                    return Use(fn, row, call)
+                    return FrameworkCall(fn, row, call)
                 if kinds & set(row.on):
-                    return Use(fn, row, call)
+                    return FrameworkCall(fn, row, call)
                 unknown = row.on and receiver and not kinds and not self.code.targets(call.callee, fn)
                 # A receiver of a type that is none of ours is not of the framework.
                 if weak is None and unknown and not self._typed(receiver, fn) and self._distinct(row, call):
-                    weak = Use(fn, row, call, False)
+                    weak = FrameworkCall(fn, row, call, False)
                 continue
             if free is not None and free not in ("rclcpp", "this", "") and "::" in call.callee:
                 continue
             if self.code.targets(call.callee, fn) and not kinds & {"node"}:
                 continue  # a function of the code's own that has the same name
-            return Use(fn, row, call)
+            return FrameworkCall(fn, row, call)
         return weak
 
-    def _receiver(self, fn: Fn, call: Call) -> tuple[str, frozenset[str], str | None]:
+    def _receiver(self, fn: Fn, call: FlowCall) -> tuple[str, frozenset[str], str | None]:
         """The receiver as written, its kinds, and the scope of a function that has no receiver."""
         callee = call.callee
         if fn.source.facts.language == "python":
@@ -117,7 +117,7 @@ class Calls:
             imported = meant != callee or head in self.code.aliases[fn.source.path]
             if not receiver or imported:
                 return receiver, frozenset(), around(meant)
-            return receiver, self.kinds_of(self.code.type_of(Expr("name", receiver), fn), fn), None
+            return receiver, self.kinds_of(self.code.type_of(FlowExpr("name", receiver), fn), fn), None
         if "." in callee:
             receiver = callee.rpartition(".")[0]
             if receiver == "this":
@@ -125,7 +125,7 @@ class Calls:
             if receiver.endswith("()"):
                 kind = self.code.type_of_call(receiver, fn)
             else:
-                kind = self.code.type_of(Expr("name", receiver), fn)
+                kind = self.code.type_of(FlowExpr("name", receiver), fn)
             return receiver, self.kinds_of(kind, fn) | self._getter(receiver), None
         if "::" in callee:
             return "", frozenset(), around(self.code.meant(callee, fn.source, fn.scope))
@@ -137,20 +137,20 @@ class Calls:
         return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
 
     def _typed(self, receiver: str, fn: Fn) -> bool:
-        return bool(not receiver.endswith("()") and self.code.type_of(Expr("name", receiver), fn).name)
+        return bool(not receiver.endswith("()") and self.code.type_of(FlowExpr("name", receiver), fn).name)
 
-    def _distinct(self, row: Row, call: Call) -> bool:
+    def _distinct(self, row: FrameworkRow, call: FlowCall) -> bool:
         if row.does in ("publisher", "subscriber") and call.types:
             return True
         return tail(call.callee) not in _COMMON or row.does == "publish"
 
-    def _first_fits(self, wanted: str, fn: Fn, call: Call) -> bool:
+    def _first_fits(self, wanted: str, fn: Fn, call: FlowCall) -> bool:
         positional = [argument for argument in call.arguments if argument.kind != "keyword"]
         if not positional:
             return wanted == "other" or (wanted == "text" and bool(call.arguments))
         return self.is_node(positional[0], fn) == (wanted == "node")
 
-    def is_node(self, value: Expr, fn: Fn) -> bool:
+    def is_node(self, value: FlowExpr, fn: Fn) -> bool:
         """Whether an argument is a node, a node handle, or what stands for one."""
         if value.kind == "name":
             if value.text == "this" or value.text in ("self", "*this"):
@@ -173,7 +173,7 @@ class Calls:
             )
         return value.kind == "other" and "this" in value.text
 
-    def _objects(self, fn: Fn) -> Iterator[Use]:
+    def _objects(self, fn: Fn) -> Iterator[FrameworkCall]:
         seen = set()
         for rows, call in self._made(fn):
             for row in rows:
@@ -184,9 +184,9 @@ class Calls:
                 key = (row.types, call.line, call.target)
                 if key not in seen:
                     seen.add(key)
-                    yield Use(fn, row, call)
+                    yield FrameworkCall(fn, row, call)
 
-    def _rows(self, name: str, fn: Fn) -> list[Row]:
+    def _rows(self, name: str, fn: Fn) -> list[FrameworkRow]:
         """The rows about objects of a class that a function makes; none for most classes."""
         key = (name, fn.source.facts.language)
         known = self._objects_of.get(key)
@@ -194,7 +194,7 @@ class Calls:
             known = self._objects_of[key] = self.table.objects_of(name, key[1] == "python") if name else []
         return known
 
-    def _made(self, fn: Fn) -> Iterator[tuple[list[Row], Call]]:
+    def _made(self, fn: Fn) -> Iterator[tuple[list[FrameworkRow], FlowCall]]:
         """Objects that rows tell of, with the call that makes them: declared, initialised as members or bases, or made
         by make_shared."""
         code, source, scope = self.code, fn.source, fn.scope
@@ -219,7 +219,10 @@ class Calls:
                     if rows := self._rows(kind.name, fn):
                         target = around(call.callee) if last == "reset" else ""
                         arguments = ", ".join(kind.arguments)
-                        yield rows, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
+                        yield (
+                            rows,
+                            FlowCall(make.text, make.parts, call.line, call.column, call.guard, arguments, target),
+                        )
             if last and not cpp:
                 for name in self._made_in_python(fn, call, last):
                     if rows := self._rows(name, fn):
@@ -232,7 +235,7 @@ class Calls:
             base = code.base_made(fn, each)
             if base is not None:
                 if rows := self._rows(base[0], fn):
-                    yield rows, Call(base[0], base[1], each.line, 0, each.guard)
+                    yield rows, FlowCall(base[0], base[1], each.line, 0, each.guard)
                 continue
             for make in _nested(value) if value.parts or value.kind == "make" else ():
                 if not make.text:
@@ -240,7 +243,7 @@ class Calls:
                 kind = code.meant_type(make.text, source, scope)
                 if rows := self._rows(kind.name, fn):
                     types = ", ".join(kind.arguments)
-                    yield rows, Call(make.text, make.parts, each.line, 0, each.guard, types, each.target)
+                    yield rows, FlowCall(make.text, make.parts, each.line, 0, each.guard, types, each.target)
             if value.kind == "make" and value.text:
                 continue
             if value.kind in ("list", "make") or each.target.startswith("this."):
@@ -249,9 +252,9 @@ class Calls:
                 if rows and value.kind in ("list", "make", "name", "text", "call"):
                     arguments = value.parts if value.kind in ("list", "make") else (value,)
                     types = ", ".join(kind.arguments)
-                    yield rows, Call(kind.name, arguments, each.line, 0, each.guard, types, each.target)
+                    yield rows, FlowCall(kind.name, arguments, each.line, 0, each.guard, types, each.target)
 
-    def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, Call]]:
+    def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
         told once."""
         owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
@@ -273,16 +276,16 @@ class Calls:
             if given is not None and given.kind == "make" and given.text and target not in begun:
                 kind = self.code.meant_type(given.text, owner.source, owner.name)
                 types = ", ".join(kind.arguments)
-                yield kind.name, Call(kind.name, given.parts, member.line, 0, -1, types, target)
+                yield kind.name, FlowCall(kind.name, given.parts, member.line, 0, -1, types, target)
             elif member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
                 kind = self.code.meant_type(member.type, owner.source, owner.name)
                 # What is left is a pointer: `Client<T>::SharedPtr`.
                 whole = "<" not in member.type or member.type.rstrip().endswith(">")
                 if whole and parsed(member.type).name == member.type.partition("<")[0]:
                     types = ", ".join(kind.arguments)
-                    yield kind.name, Call(kind.name, (), fn.facts.line, 0, -1, types, target)
+                    yield kind.name, FlowCall(kind.name, (), fn.facts.line, 0, -1, types, target)
 
-    def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[str]:
+    def _made_in_python(self, fn: Fn, call: FlowCall, last: str) -> Iterator[str]:
         if call.callee == "super().__init__":
             owner = self.code.owner_of(fn)
             yield from self.code.base_names(owner) if owner else ()
@@ -291,14 +294,14 @@ class Calls:
         elif last == "__init__":
             yield self.code.meant(around(call.callee), fn.source)
 
-    def _initialised(self, fn: Fn, target: str) -> Type:
+    def _initialised(self, fn: Fn, target: str) -> FlowType:
         variable = self.code.identity(target, fn)
         text, source, scope = self.code.declared_type(variable, fn)
-        return self.code.meant_type(text, source, scope) if text else Type("")
+        return self.code.meant_type(text, source, scope) if text else FlowType("")
 
     # Arguments
 
-    def argument(self, use: Use, spots: tuple[Spot, ...]) -> Expr | None:
+    def argument(self, use: FrameworkCall, spots: tuple[Spot, ...]) -> FlowExpr | None:
         """The first of some spots that a use has."""
         call = use.call
         positional = [argument for argument in call.arguments if argument.kind != "keyword"]
@@ -307,7 +310,7 @@ class Calls:
                 if spot < len(positional):
                     return positional[spot]
             elif spot.startswith("="):
-                return Expr("text", spot[1:])
+                return FlowExpr("text", spot[1:])
             elif spot.startswith("text "):
                 place = int(spot[5:])
                 if place < len(positional) and self.textual(positional[place], use.fn):
@@ -325,7 +328,7 @@ class Calls:
                         return argument.parts[0]
         return None
 
-    def textual(self, value: Expr, fn: Fn) -> bool:
+    def textual(self, value: FlowExpr, fn: Fn) -> bool:
         """Whether an expression shows itself to be a string."""
         if value.kind in ("text", "join"):
             return True
@@ -338,17 +341,17 @@ class Calls:
             and any(part in value.text.lower() for part in ("name", "topic"))
         )
 
-    def template_argument(self, use: Use, number: int) -> str:
+    def template_argument(self, use: FrameworkCall, number: int) -> str:
         """A template argument as written, empty when there is none."""
         arguments = split_at_commas(use.call.types) if use.call.types else []
         return arguments[number] if number < len(arguments) else ""
 
-    def receiver_of(self, use: Use) -> str:
+    def receiver_of(self, use: FrameworkCall) -> str:
         """The receiver of a method's call as written, empty for none."""
         callee = use.call.callee
         return callee.rpartition(".")[0] if "." in callee else ""
 
-    def kept_in(self, use: Use) -> Variable | None:
+    def kept_in(self, use: FrameworkCall) -> Variable | None:
         """The variable that a use's result is kept in."""
         return self.code.identity(use.call.target, use.fn) if use.call.target else None
 
@@ -356,11 +359,13 @@ class Calls:
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
 
 
-def _with_types(call: Call, kind: Type) -> Call:
-    return Call(call.callee, call.arguments, call.line, call.column, call.guard, ", ".join(kind.arguments), call.target)
+def _with_types(call: FlowCall, kind: FlowType) -> FlowCall:
+    return FlowCall(
+        call.callee, call.arguments, call.line, call.column, call.guard, ", ".join(kind.arguments), call.target
+    )
 
 
-def _nested(value: Expr, depth: int = 0) -> Iterator[Expr]:
+def _nested(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
     if value.kind == "make":
         yield value
     elif depth < 3 and value.kind in ("call", "choice", "bind", "list"):

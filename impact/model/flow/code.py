@@ -6,13 +6,23 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from typing import Generic, NamedTuple, TypeVar
 
-from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Member, Parameter
-from .types import UNKNOWN, Type, parsed
+from ...facts.flow import (
+    Alias,
+    Assignment,
+    DataMember,
+    FlowCall,
+    FlowClass,
+    FlowExpr,
+    FlowFile,
+    FlowFunction,
+    FlowParameter,
+)
+from .types import UNKNOWN, FlowType, parsed
 
 _Row = TypeVar("_Row")
 
 
-class Source(NamedTuple):
+class CodeFile(NamedTuple):
     """A file of the code. package: its name, empty for none."""
 
     path: str
@@ -30,14 +40,14 @@ class Fn:
         "source", "targets",
     )  # fmt: skip
 
-    def __init__(self, source: Source, facts: Function):
+    def __init__(self, source: CodeFile, facts: FlowFunction):
         self.source, self.facts = source, facts
         self.name = facts.name
         self.place = f"{source.path}:{facts.line}:{facts.name}"
         self.heads: dict[str | tuple[str, ...], Variable] = {}
         self.identities: dict[str, Variable] = {}
         self.targets: dict[str, list[Fn]] = {}
-        self.made: list[tuple[str, tuple[Expr, ...], int]] | None = None
+        self.made: list[tuple[str, tuple[FlowExpr, ...], int]] | None = None
         # Namespaces and class around the function, joined as its language does.
         self.scope = around(facts.name)
         self.owner = parts_of(facts.owner)
@@ -67,8 +77,8 @@ class Fn:
 class Cls(NamedTuple):
     """A class with the file it stands in."""
 
-    source: Source
-    facts: Class
+    source: CodeFile
+    facts: FlowClass
 
     @property
     def name(self) -> str:
@@ -84,7 +94,7 @@ class Variable(NamedTuple):
     name: str
 
 
-def _names_of(source: Source) -> tuple[object, ...]:
+def _names_of(source: CodeFile) -> tuple[object, ...]:
     """What a file contributes to what names mean: where they are equal, names mean the same."""
     facts = source.facts
     return source.path, source.package, facts.language, facts.aliases, id(facts) if facts.classes else 0
@@ -140,14 +150,14 @@ def around(name: str) -> str:
     return name.rpartition("::" if "::" in name else ".")[0]
 
 
-class Code:
+class FlowCode:
     """Functions, classes and variables of many files.
 
     before: an earlier state of the same code. Where no name means anything else now, what was found out about names is
     taken from it, and it must not be asked again.
     """
 
-    def __init__(self, sources: Iterable[Source], before: Code | None = None):
+    def __init__(self, sources: Iterable[CodeFile], before: FlowCode | None = None):
         self.sources = list(sources)
         self.names = tuple(_names_of(source) for source in self.sources)
         if before is not None and before.names != self.names:
@@ -164,7 +174,7 @@ class Code:
         # Names in C++ that stand for others.
         self._renamed: set[str] = set()
         # Packages of Python by the names of their folders.
-        self._packages: dict[str, list[Source]] = {}
+        self._packages: dict[str, list[CodeFile]] = {}
         for place, source in enumerate(self.sources):
             known = self.aliases.setdefault(source.path, {})
             if source.path.endswith("/__init__.py"):
@@ -194,17 +204,17 @@ class Code:
         self._bases: dict[str, list[Cls]] = before._bases if before is not None else {}
         self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
         self._meant: dict[tuple[str, str, str], str] = before._meant if before is not None else {}
-        self._meant_types: dict[tuple[str, str, str], Type] = before._meant_types if before is not None else {}
+        self._meant_types: dict[tuple[str, str, str], FlowType] = before._meant_types if before is not None else {}
         self._owner_of: dict[int, Cls | None] = {}
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
         self._functions_of: dict[int, list[Fn]] = {}
         self._members: dict[int, frozenset[str]] = {}
-        self._member_types: dict[tuple[str, str], tuple[str, Source, str] | None] = {}
+        self._member_types: dict[tuple[str, str], tuple[str, CodeFile, str] | None] = {}
 
     # Names
 
-    def meant(self, name: str, source: Source, scope: str = "") -> str:
+    def meant(self, name: str, source: CodeFile, scope: str = "") -> str:
         """A name with aliases of its file (and, in C++, its package's headers) resolved, at most five times over."""
         key = (name, source.path, scope)
         known = self._meant.get(key)
@@ -212,7 +222,7 @@ class Code:
             known = self._meant[key] = self._find_meant(name, source, scope)
         return known
 
-    def _find_meant(self, name: str, source: Source, scope: str) -> str:
+    def _find_meant(self, name: str, source: CodeFile, scope: str) -> str:
         for _ in range(5):
             head, separator, rest = _first(name)
             alias = self._alias(head, source, scope)
@@ -228,7 +238,7 @@ class Code:
             name = new
         return name
 
-    def meant_type(self, text: str, source: Source, scope: str = "") -> Type:
+    def meant_type(self, text: str, source: CodeFile, scope: str = "") -> FlowType:
         """A type as written, aliases resolved; those that stand for types with template arguments too."""
         key = (text, source.path, scope)
         known = self._meant_types.get(key)
@@ -236,7 +246,7 @@ class Code:
             known = self._meant_types[key] = self._find_meant_type(text, source, scope)
         return known
 
-    def _find_meant_type(self, text: str, source: Source, scope: str) -> Type:
+    def _find_meant_type(self, text: str, source: CodeFile, scope: str) -> FlowType:
         kind = parsed(text)
         for _ in range(5):
             head, _, rest = _first(kind.name)
@@ -247,18 +257,18 @@ class Code:
             if alias is None:
                 break
             if rest:
-                new = Type(f"{parsed(alias.target).name}{'::' if '::' in kind.name else '.'}{rest}", kind.arguments)
+                new = FlowType(f"{parsed(alias.target).name}{'::' if '::' in kind.name else '.'}{rest}", kind.arguments)
                 # `using Msg = a::B; Msg::SharedPtr`
-                new = Type(parsed(new.name).name, new.arguments or parsed(alias.target).arguments)
+                new = FlowType(parsed(new.name).name, new.arguments or parsed(alias.target).arguments)
             else:
                 new = parsed(alias.target)
-                new = Type(new.name, new.arguments or kind.arguments)
+                new = FlowType(new.name, new.arguments or kind.arguments)
             if new == kind or not new.name:
                 break
             kind = new
         return kind
 
-    def _alias(self, head: str, source: Source, scope: str) -> Alias | None:
+    def _alias(self, head: str, source: CodeFile, scope: str) -> Alias | None:
         found = self.aliases[source.path].get(head)
         if found is None and source.facts.language == "cpp":
             found = self.shared_aliases.get((source.package, head))
@@ -269,7 +279,7 @@ class Code:
             fitting = found[:1]
         return max(fitting, key=lambda alias: len(alias.scope), default=None)
 
-    def _qualified_alias(self, name: str, source: Source) -> Alias | None:
+    def _qualified_alias(self, name: str, source: CodeFile) -> Alias | None:
         """What `ns::Name` is another name of, in C++; of several packages' the own one's."""
         if source.facts.language != "cpp" or "::" not in name:
             return None
@@ -284,7 +294,7 @@ class Code:
         own = [alias for package, alias in found if package == source.package] or [alias for _, alias in found]
         return own[0] if own and len({alias.target for alias in own}) == 1 else None
 
-    def class_of(self, name: str, source: Source, scope: str = "") -> Cls | None:
+    def class_of(self, name: str, source: CodeFile, scope: str = "") -> Cls | None:
         """The class that a name means in a file and scope; None when there is none, or several that fit as well."""
         key = (name, source.path, scope)
         try:
@@ -293,7 +303,7 @@ class Code:
             found = self._class_of[key] = self._find_class(name, source, scope)
             return found
 
-    def _find_class(self, name: str, source: Source, scope: str) -> Cls | None:
+    def _find_class(self, name: str, source: CodeFile, scope: str) -> Cls | None:
         name = self.meant(parsed(name).name if "<" in name else name, source, scope)
         if not name:
             return None
@@ -340,7 +350,7 @@ class Code:
                     found.setdefault(base.name, []).append(cls)
         return found
 
-    def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[Expr, ...]] | None:
+    def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[FlowExpr, ...]] | None:
         """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
         if not each.target.startswith("this.") or fn.source.facts.language != "cpp":
             return None
@@ -539,11 +549,11 @@ class Code:
         """All assignments that change a variable."""
         return self._writes.of(variable, self._declared)
 
-    def results(self, variable: Variable) -> Sequence[tuple[Fn, Call]]:
+    def results(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall]]:
         """Calls whose result a variable keeps."""
         return self._results.of(variable, self._declared)
 
-    def passed(self, variable: Variable) -> Sequence[tuple[Fn, Call, int]]:
+    def passed(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall, int]]:
         """Calls of functions of the code that a variable is passed to, with the argument's number."""
         return self._passed.of(variable, self.identity)
 
@@ -556,11 +566,11 @@ class Code:
         return _About((e.target, fn, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
 
     @cached_property
-    def _results(self) -> _About[tuple[Fn, Call]]:
+    def _results(self) -> _About[tuple[Fn, FlowCall]]:
         return _About((c.target, fn, (fn, c)) for fn in self.functions for c in fn.facts.calls if c.target)
 
     @cached_property
-    def _passed(self) -> _About[tuple[Fn, Call, int]]:
+    def _passed(self) -> _About[tuple[Fn, FlowCall, int]]:
         return _About(
             (argument.text, fn, (fn, call, place))
             for fn in self.functions
@@ -571,7 +581,7 @@ class Code:
             if argument.kind == "name"
         )
 
-    def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, Source, str]:
+    def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, CodeFile, str]:
         """The type a variable is declared with, as written, and the file and scope in which to read it."""
         if variable.kind == "member":
             key = (variable.owner, variable.name)
@@ -593,7 +603,7 @@ class Code:
                     return constant.type, fn.source, ""
         return "", fn.source, fn.scope
 
-    def declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[Expr, Fn]]:
+    def declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
         """What a member or a constant is declared with, and a function of the file in which to read it."""
         if variable.kind == "member":
             rows = [
@@ -615,7 +625,7 @@ class Code:
             if member.value is not None:
                 yield member.value, holder
 
-    def _member_type(self, owner: str, name: str) -> tuple[str, Source, str] | None:
+    def _member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
         for cls in self.classes.get(tail(owner), ()):
             if cls.name == owner:
                 for member in cls.facts.members:
@@ -623,10 +633,10 @@ class Code:
                         return member.type, cls.source, cls.name
         return None
 
-    def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> Type:
+    def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> FlowType:
         """The type of a variable, also where `auto` or Python leave it to what it is made from."""
         if variable.kind == "this":
-            return Type(variable.owner)
+            return FlowType(variable.owner)
         text, source, scope = self.declared_type(variable, fn)
         kind = self.meant_type(text, source, scope) if text else UNKNOWN
         if kind.name or depth > 4:
@@ -637,7 +647,7 @@ class Code:
                 return kind
         return UNKNOWN
 
-    def type_of(self, value: Expr, fn: Fn, depth: int = 0) -> Type:
+    def type_of(self, value: FlowExpr, fn: Fn, depth: int = 0) -> FlowType:
         """The type of an expression as far as it shows."""
         if value.kind == "make":
             return self.meant_type(value.text, fn.source, fn.scope)
@@ -653,7 +663,7 @@ class Code:
             return self.type_of(value.parts[0], fn, depth)
         return UNKNOWN
 
-    def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> Type:
+    def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> FlowType:
         """The type that a call gives: the class for a constructor, the declared type of a function of the code."""
         name = callee.removesuffix("()")
         if depth > 4:
@@ -667,7 +677,7 @@ class Code:
                 return self.meant_type(target.facts.returns, target.source, target.scope)
         meant = self.meant(name, fn.source, fn.scope)
         if tail(meant)[:1].isupper():
-            return Type(meant)
+            return FlowType(meant)
         return UNKNOWN
 
     # Calls
@@ -730,13 +740,13 @@ class Code:
         if receiver.endswith("()"):
             kind = self.type_of_call(receiver, fn, depth + 1)
         else:
-            kind = self.type_of(Expr("name", receiver), fn, depth)
+            kind = self.type_of(FlowExpr("name", receiver), fn, depth)
         cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
         if cls is None:
             return []
         return [*self.method(cls, name), *self.overrides(cls, name)]
 
-    def imported(self, name: str, source: Source) -> list[Fn]:
+    def imported(self, name: str, source: CodeFile) -> list[Fn]:
         """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
         found = [
             f
@@ -773,9 +783,9 @@ class Code:
         return []
 
     @cached_property
-    def callers(self) -> dict[int, list[tuple[Fn, Call]]]:
+    def callers(self) -> dict[int, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function's id()."""
-        found: dict[int, list[tuple[Fn, Call]]] = {}
+        found: dict[int, list[tuple[Fn, FlowCall]]] = {}
         for fn in self.functions:
             for call in fn.facts.calls:
                 for target in self.targets(call.callee, fn):
@@ -784,11 +794,11 @@ class Code:
         return found
 
     @cached_property
-    def bound(self) -> dict[int, list[tuple[Fn, tuple[Expr, ...]]]]:
+    def bound(self) -> dict[int, list[tuple[Fn, tuple[FlowExpr, ...]]]]:
         """Functions of the code that are bound with arguments (std::bind, partial), by their id()."""
-        found: dict[int, list[tuple[Fn, tuple[Expr, ...]]]] = {}
+        found: dict[int, list[tuple[Fn, tuple[FlowExpr, ...]]]] = {}
 
-        def walk(value: Expr, fn: Fn, depth: int) -> None:
+        def walk(value: FlowExpr, fn: Fn, depth: int) -> None:
             if value.kind == "bind" and value.parts and value.parts[0].kind in ("function", "name"):
                 name, arguments = value.parts[0].text, value.parts[1:]
                 method = "::" in name and bool(arguments) and arguments[0].text == "this"
@@ -809,9 +819,9 @@ class Code:
         return found
 
     @cached_property
-    def constructions(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
+    def constructions(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
         """Where objects of a class of the code are made: name of the class to function, arguments and line."""
-        found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
+        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.functions:
             for name, arguments, line in made_in(fn, self):
                 last = tail(name)
@@ -822,14 +832,14 @@ class Code:
         return found
 
 
-def made_in(fn: Fn, code: Code) -> list[tuple[str, tuple[Expr, ...], int]]:
+def made_in(fn: Fn, code: FlowCode) -> list[tuple[str, tuple[FlowExpr, ...], int]]:
     """Objects that a function makes: type as meant (template arguments kept), arguments, line."""
     if fn.made is None:
         fn.made = list(_made_in(fn, code))
     return fn.made
 
 
-def _made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
+def _made_in(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...], int]]:
     for call in fn.facts.calls:
         last = tail(call.callee)
         if last in ("make_shared", "make_unique", "allocate_shared") and call.types:
@@ -848,7 +858,7 @@ def _made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
                 yield value.text, value.parts, each.line
 
 
-def _makes(value: Expr, depth: int = 0) -> Iterator[Expr]:
+def _makes(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
     if value.kind == "make" and value.text:
         yield value
     if depth < 4:
@@ -856,7 +866,7 @@ def _makes(value: Expr, depth: int = 0) -> Iterator[Expr]:
             yield from _makes(part, depth + 1)
 
 
-def parameter_of(fn: Fn, name: str) -> tuple[int, Parameter] | None:
+def parameter_of(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
     """The place and facts of a parameter; `self` is not counted."""
     rows = fn.facts.parameters
     offset = 1 if rows and rows[0].name in ("self", "cls") and fn.source.facts.language == "python" else 0
@@ -889,7 +899,7 @@ def _module_of(path: str, module: Sequence[str]) -> bool:
     return bool(names) and parts[-len(names) :] == names
 
 
-def _constants(source: Source, name: str) -> list[tuple[Member, Source]]:
+def _constants(source: CodeFile, name: str) -> list[tuple[DataMember, CodeFile]]:
     return [(constant, source) for constant in source.facts.constants if tail(constant.name) == name]
 
 
@@ -899,7 +909,7 @@ def _absolute(target: str, path: str) -> tuple[str, ...]:
     return (*path.split("/")[:-up], *parts_of(target)) if up else parts_of(target)
 
 
-def _groups(found: list[Cls], source: Source, scope: str) -> Mapping[int, list[Cls]]:
+def _groups(found: list[Cls], source: CodeFile, scope: str) -> Mapping[int, list[Cls]]:
     """Classes by how near they are to whoever names them."""
     groups: dict[int, list[Cls]] = {}
     for cls in found:

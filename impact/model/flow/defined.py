@@ -11,7 +11,7 @@ from ...targets.surface.fields import default_fields
 _OF_ACTIONS = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
 
 
-class Defined:
+class DefinedInterfaces:
     """Asks whether an interface is there. own: package of the workspace to the names of its interfaces; ros: the
     generation of released packages, which are not asked when it is 0."""
 

@@ -37,7 +37,7 @@ class Sure(NamedTuple):
     endpoint: Endpoint
 
 
-class Pair(NamedTuple):
+class FlowPair(NamedTuple):
     """A publisher (or server) and a subscriber (or client) of one name, in a flow. launch: the launch file that surely
     starts both, empty where nothing tells that they run together."""
 
@@ -126,7 +126,7 @@ class Flow:
         """Everything of the same node and role at the same name: code may choose among several."""
         return self._of_node.get((one.node, one.role, one.topic), [])
 
-    def pairs(self, launch: str = "") -> Iterator[Pair]:
+    def pairs(self, launch: str = "") -> Iterator[FlowPair]:
         """Every two sure endpoints that meet under a name, each two places of source once; of a name that very many
         meet under, the first."""
         seen = set()
@@ -144,7 +144,7 @@ class Flow:
                     key = (*_place(giver.endpoint), *_place(taker.endpoint))
                     if key not in seen:
                         seen.add(key)
-                        yield Pair(self, giver, taker, launch)
+                        yield FlowPair(self, giver, taker, launch)
 
 
 def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
@@ -187,7 +187,7 @@ def launched_flow(whole: Flow, launch: Launch) -> Flow:
     return Flow(launch.graph, whole.interfaces, surely, whole)
 
 
-def met(workspace: Workspace) -> Iterator[Pair]:
+def met(workspace: Workspace) -> Iterator[FlowPair]:
     """Pairs that a launch file starts, then pairs that nothing starts together and that have nobody else to talk to:
     the workspace's programs need not be made to run together, but these have no other use. What launch files start of
     the latter has to go by the same name there."""
@@ -217,7 +217,7 @@ class _Started:
                 if one.node in programs:
                     self._names[programs[one.node]].add(one.topic)
 
-    def may_meet(self, pair: Pair) -> bool:
+    def may_meet(self, pair: FlowPair) -> bool:
         """Whether two programs that no launch file starts together have the names that the source gives."""
         sides = (pair.giver, pair.taker)
         if any({side.node.id for side in sides} <= together for together in self._together):
@@ -233,7 +233,7 @@ def unstarted(workspace: Workspace) -> Flow:
     return flow
 
 
-def _left_to_each_other(flow: Flow, pair: Pair) -> bool:
+def _left_to_each_other(flow: Flow, pair: FlowPair) -> bool:
     """Whether neither side has a partner of its own type in the workspace."""
     giver, taker = pair.giver.endpoint, pair.taker.endpoint
     return not (

@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 from msgspec import structs
 
 from ...facts.cpp.names import split_at_commas
-from ...facts.flow import Expr
-from .calls import Calls, Use
-from .code import Code, Fn, Variable, around, is_number, parameter_of, tail
-from .defined import Defined
+from ...facts.flow import FlowExpr
+from .calls import Calls, FrameworkCall
+from .code import FlowCode, Fn, Variable, around, is_number, parameter_of, tail
+from .defined import DefinedInterfaces
 from .graph import Role
 from .templates import Templates
 from .types import interface_of, interface_of_header, parsed
-from .values import Value, Values, beside
+from .values import FlowValue, FlowValues, beside
 
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 LOST = "?"
@@ -35,7 +35,7 @@ _ROLES: dict[str, Role] = {
 }
 
 
-class Typed(NamedTuple):
+class TemplateType(NamedTuple):
     """A type that an endpoint in a template is of: where a class is made, or a function (by its id()) runs; always for
     neither."""
 
@@ -50,8 +50,8 @@ class Site(NamedTuple):
     is given. implied: the framework fixes the name. types: instead of one type those that a template has."""
 
     role: Role
-    use: Use
-    names: tuple[Value, ...]
+    use: FrameworkCall
+    names: tuple[FlowValue, ...]
     written: str
     prefix: str
     type: str
@@ -59,14 +59,14 @@ class Site(NamedTuple):
     variable: Variable | None = None
     reason: str = ""
     implied: bool = False
-    types: tuple[Typed, ...] = ()
+    types: tuple[TemplateType, ...] = ()
 
 
 class Statement(NamedTuple):
     """A publish statement. sites: the publishers it may use. through: the function of the code's own called `publish`
     that it calls, which holds the statement that sends."""
 
-    use: Use
+    use: FrameworkCall
     sites: tuple[Site, ...]
     type: str
     expression: str
@@ -77,18 +77,18 @@ class Statement(NamedTuple):
 class TimerSite(NamedTuple):
     """Where code makes a timer."""
 
-    use: Use
+    use: FrameworkCall
     period: str
     callbacks: tuple[Fn, ...]
 
 
-def _words(value: Expr) -> Iterator[str]:
+def _words(value: FlowExpr) -> Iterator[str]:
     yield value.text
     for part in value.parts:
         yield from _words(part)
 
 
-def _holds(value: Expr, made: set[tuple[str, tuple[Expr, ...]]]) -> bool:
+def _holds(value: FlowExpr, made: set[tuple[str, tuple[FlowExpr, ...]]]) -> bool:
     """Whether an expression is one of some calls, by callee and arguments, or has one among its parts."""
     return (value.kind in ("call", "make") and (value.text, value.parts) in made) or any(
         _holds(part, made) for part in value.parts
@@ -101,7 +101,7 @@ def _serves(fn: Fn) -> bool:
     return any("::Request" in each or "::Response" in each for each in types)
 
 
-def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
+def _place_in_row(value: FlowExpr) -> tuple[FlowExpr, int] | None:
     """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
     if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
         walked, place = value.parts[0].parts[:1], value.parts[1]
@@ -110,7 +110,7 @@ def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
     return None
 
 
-def shown(value: Expr | None) -> str:
+def shown(value: FlowExpr | None) -> str:
     """An expression for people, near to how it is written."""
     if value is None:
         return ""
@@ -138,10 +138,12 @@ def shown(value: Expr | None) -> str:
 class Sites:
     """All sites of a body of code."""
 
-    def __init__(self, code: Code, calls: Calls, values: Values, defined: Defined):
+    def __init__(self, code: FlowCode, calls: Calls, values: FlowValues, defined: DefinedInterfaces):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
-        self._held: dict[int, tuple[dict[tuple[Expr, ...], str], dict[tuple[str, tuple[Expr, ...]], list[Any]]]] = {}
+        self._held: dict[
+            int, tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]
+        ] = {}
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -156,7 +158,7 @@ class Sites:
         return found
 
     @property
-    def wrapped(self) -> list[Use]:
+    def wrapped(self) -> list[FrameworkCall]:
         """Uses inside wrappers of the framework's own functions."""
         return [use for use in self.calls.uses if use.row.does in _ROLES and self.wraps(use.fn)]
 
@@ -167,10 +169,10 @@ class Sites:
         meant = any(row.does == does if does else row.does in _ROLES for row in rows)
         return bool(fn.facts.parameters) and meant and not fn.is_lambda
 
-    def _rows(self, use: Use) -> Iterator[Use]:
+    def _rows(self, use: FrameworkCall) -> Iterator[FrameworkCall]:
         """The use for each row of the list that its arguments walk through together, with what the row has for them:
         `[Subscriber(topic, type) for topic, type in rows]`."""
-        bound: dict[str, tuple[Expr, int]] = {}
+        bound: dict[str, tuple[FlowExpr, int]] = {}
         for argument in use.call.arguments:
             if argument.kind == "name" and argument.text in use.fn.assigned:
                 each = max(
@@ -192,7 +194,7 @@ class Sites:
                 )
                 yield use._replace(call=structs.replace(use.call, arguments=arguments))
 
-    def _endpoints(self, use: Use) -> Iterator[Site]:
+    def _endpoints(self, use: FrameworkCall) -> Iterator[Site]:
         calls, row = self.calls, use.row
         named = calls.argument(use, row.topic)
         fixed = bool(row.topic) and isinstance(row.topic[0], str) and row.topic[0].startswith("=")
@@ -212,7 +214,7 @@ class Sites:
             yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
         yield from self._further(site)
 
-    def names(self, use: Use, prefix: str, values: Values) -> tuple[Value, ...]:
+    def names(self, use: FrameworkCall, prefix: str, values: FlowValues) -> tuple[FlowValue, ...]:
         """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
         expressions are worth where it runs."""
         found = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
@@ -220,7 +222,7 @@ class Sites:
             return found
         lost = "the namespace of its node handle is not known"
         return tuple(
-            Value(None, "unresolved", f"`{prefix}/{value.text}`: {lost}", value.parameter)
+            FlowValue(None, "unresolved", f"`{prefix}/{value.text}`: {lost}", value.parameter)
             if value.text is not None and value.text[:1] not in ("/", "~")
             else value
             for value in found
@@ -233,10 +235,10 @@ class Sites:
         for also in site.use.row.also:
             if words.intersection(also.unless):
                 continue
-            role, names = _ROLES[also.role], (Value(also.topic),)
+            role, names = _ROLES[also.role], (FlowValue(also.topic),)
             yield site._replace(role=role, names=names, type=also.type, callbacks=(), reason="", implied=True)
 
-    def _variable(self, use: Use) -> Variable | None:
+    def _variable(self, use: FrameworkCall) -> Variable | None:
         kept = self.calls.kept_in(use)
         if kept is not None:
             return kept
@@ -253,21 +255,23 @@ class Sites:
                     return self.code.identity(each.target, use.fn)
         return None
 
-    def _holders(self, fn: Fn) -> tuple[dict[tuple[Expr, ...], str], dict[tuple[str, tuple[Expr, ...]], list[Any]]]:
+    def _holders(
+        self, fn: Fn
+    ) -> tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]:
         """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
         it; and what it wraps, by that call: the assignments."""
         known = self._held.get(id(fn))
         if known is not None:
             return known
         # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
-        put: dict[tuple[Expr, ...], str] = {}
+        put: dict[tuple[FlowExpr, ...], str] = {}
         for call in fn.facts.calls:
             if "." in call.callee and tail(call.callee) in _PUTS:
                 for argument in call.arguments:
                     if argument.kind in ("call", "make"):
                         put.setdefault(argument.parts, call.callee)
         # `fast_ = std::make_unique<RealtimePublisher<T>>(create_publisher<T>(...))`
-        wrapped: dict[tuple[str, tuple[Expr, ...]], list[Any]] = {}
+        wrapped: dict[tuple[str, tuple[FlowExpr, ...]], list[Any]] = {}
         for each in fn.facts.assignments:
             for part in each.value.parts if each.value.kind == "make" else ():
                 if part.kind == "call":
@@ -275,33 +279,33 @@ class Sites:
         self._held[id(fn)] = put, wrapped
         return put, wrapped
 
-    def _is_publisher(self, value: Expr, fn: Fn) -> bool:
+    def _is_publisher(self, value: FlowExpr, fn: Fn) -> bool:
         """Whether an object that is made is a publisher."""
         return "publisher" in self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn)
 
-    def template_parameter(self, use: Use) -> str:
+    def template_parameter(self, use: FrameworkCall) -> str:
         """The parameter of a template that tells an endpoint's type, empty for none."""
         for spot in use.row.type:
             text = ""
             if isinstance(spot, str) and spot.startswith("<"):
                 text = self.calls.template_argument(use, int(spot.strip("<>")))
             elif spot == "of receiver":
-                kind = self.code.type_of(Expr("name", self.calls.receiver_of(use)), use.fn)
+                kind = self.code.type_of(FlowExpr("name", self.calls.receiver_of(use)), use.fn)
                 text = kind.arguments[0] if kind.arguments else ""
             name = self.code.meant_type(text, use.fn.source, use.fn.scope).name if text else ""
             if name and self.templates.has(name, use.fn):
                 return name
         return ""
 
-    def _types_of_template(self, use: Use) -> Iterator[Typed]:
+    def _types_of_template(self, use: FrameworkCall) -> Iterator[TemplateType]:
         name = self.template_parameter(use)
         for one in self.templates.given(name, use.fn) if name else ():
             kind = self.code.meant_type(one.text, one.source, one.scope)
             known = interface_of(kind.name)
             if known:
-                yield Typed(known, one.cls, one.fn)
+                yield TemplateType(known, one.cls, one.fn)
 
-    def type_of(self, use: Use, values: Values | None = None) -> str:
+    def type_of(self, use: FrameworkCall, values: FlowValues | None = None) -> str:
         """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known. values: what
         expressions are worth where it runs."""
         code, row, fn, values = self.code, use.row, use.fn, values or self.values
@@ -314,7 +318,7 @@ class Sites:
                 if not text and row.does in ("subscriber", "server"):
                     text = self._parameter_type(use)
             elif spot == "of receiver":
-                kind = code.type_of(Expr("name", self.calls.receiver_of(use)), fn)
+                kind = code.type_of(FlowExpr("name", self.calls.receiver_of(use)), fn)
                 if tail(kind.name) == "SubscriberFilter":
                     return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
                 text = kind.arguments[0] if kind.arguments else ""
@@ -398,7 +402,7 @@ class Sites:
         """Whether a name of Python is neither a variable nor made in the file."""
         return self.code.identity(name, fn).kind == "global" and not self.code.writes(self.code.identity(name, fn))
 
-    def _python_type(self, value: Expr, fn: Fn, values: Values) -> str:
+    def _python_type(self, value: FlowExpr, fn: Fn, values: FlowValues) -> str:
         meant = self.code.meant(value.text, fn.source)
         if interface_of(meant):
             return meant
@@ -423,7 +427,7 @@ class Sites:
                     return found
         return meant
 
-    def _class_by_name(self, value: Expr, fn: Fn, values: Values, depth: int = 0) -> str:
+    def _class_by_name(self, value: FlowExpr, fn: Fn, values: FlowValues, depth: int = 0) -> str:
         """The type of a class that is looked up by its name, `*` for that of whatever a topic has."""
         if value.kind == "index" and value.parts:
             value = value.parts[0]
@@ -438,7 +442,7 @@ class Sites:
                     return found
         return ""
 
-    def _parameter_type(self, use: Use) -> str:
+    def _parameter_type(self, use: FrameworkCall) -> str:
         """The message type that a callback's parameter tells."""
         callbacks, _ = self._callbacks(use)
         for fn in callbacks:
@@ -453,7 +457,7 @@ class Sites:
 
     # Callbacks
 
-    def _callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
+    def _callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
         row = use.row
         if not row.callback:
             return self._joined_callbacks(use)
@@ -472,7 +476,7 @@ class Sites:
             return self._callbacks_of_options(use) or self._joined_callbacks(use)
         return (), f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
 
-    def _callbacks_of_options(self, use: Use) -> tuple[tuple[Fn, ...], str] | None:
+    def _callbacks_of_options(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str] | None:
         """Those of the options of ROS 1 that are all a call is given, None without any: `subscribe(options)`.
 
         Source: http://docs.ros.org/en/noetic/api/roscpp/html/structros_1_1SubscribeOptions.html (create, init)."""
@@ -485,7 +489,7 @@ class Sites:
         found = [body for call in made if len(call.arguments) > 2 for body in self.bodies(call.arguments[2], fn, use)]
         return (tuple(found), "") if found else None
 
-    def _joined_callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
+    def _joined_callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
         """For filters: the callbacks registered with whatever joins them."""
         # A listener to transforms that a filter waits for feeds nothing through it.
         fixed = isinstance(use.row.topic[0], str) and use.row.topic[0].startswith("=") if use.row.topic else False
@@ -496,7 +500,7 @@ class Sites:
         found = list(dict.fromkeys(fn for fn in self.joins.get(variable, ())))
         return tuple(found), ""
 
-    def _joint(self, use: Use) -> Variable | None:
+    def _joint(self, use: FrameworkCall) -> Variable | None:
         """What is made of filters that stand among its arguments: `sync = TimeSynchronizer([Subscriber(...)], 10)`."""
         calls, here = use.fn.facts.calls, (use.call.line, use.call.column)
         made = {(call.callee, call.arguments) for call in calls if (call.line, call.column) == here}
@@ -557,14 +561,14 @@ class Sites:
                         queue.append(fed)
         return found
 
-    def _named(self, arguments: tuple[Expr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
+    def _named(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
         for argument in arguments:
             if argument.kind == "name":
                 yield self.code.identity(argument.text, fn)
             elif depth < 3 and argument.kind in ("list", "make", "call", "keyword"):
                 yield from self._named(argument.parts, fn, depth + 1)
 
-    def bodies(self, value: Expr, fn: Fn, use: Use | None = None, depth: int = 0) -> list[Fn]:
+    def bodies(self, value: FlowExpr, fn: Fn, use: FrameworkCall | None = None, depth: int = 0) -> list[Fn]:
         """The functions of the code that a callback expression may call."""
         code = self.code
         if depth > 5:
@@ -611,7 +615,7 @@ class Sites:
                             return found
         return []
 
-    def _passed_bodies(self, name: str, fn: Fn, use: Use | None, depth: int) -> list[Fn]:
+    def _passed_bodies(self, name: str, fn: Fn, use: FrameworkCall | None, depth: int) -> list[Fn]:
         for one in self.code.chain(fn):
             place = parameter_of(one, name)
             if place is None:
@@ -655,7 +659,7 @@ class Sites:
         owner = code.owner_of(fn)
         return code.method(owner, name) if owner is not None else []
 
-    def _fitting(self, found: list[Fn], use: Use | None) -> list[Fn]:
+    def _fitting(self, found: list[Fn], use: FrameworkCall | None) -> list[Fn]:
         """Of overloads those that fit: a service's callback has its request, and a subscriber's first parameter is of
         the message's type."""
         if use is not None and len(found) > 1 and use.row.does in ("subscriber", "server"):
@@ -676,7 +680,7 @@ class Sites:
 
     # Namespaces of node handles
 
-    def prefix(self, use: Use) -> str:
+    def prefix(self, use: FrameworkCall) -> str:
         """The namespace of the handle that a name is given to: `~` for a private one, `` for the node's own."""
         row = use.row
         if row.first == "node" and use.call.arguments:
@@ -688,14 +692,14 @@ class Sites:
         receiver = self.calls.receiver_of(use)
         if row.framework in ("roscpp", "image_transport") and receiver:
             if not receiver.endswith("()"):
-                return self.handle(Expr("name", receiver), use.fn)
+                return self.handle(FlowExpr("name", receiver), use.fn)
             made = receiver.removesuffix("()")
             near = [call for call in use.fn.facts.calls if call.callee == made]
             near.sort(key=lambda call: abs(call.line - use.call.line))
-            return self.handle(Expr("call", made, near[0].arguments if near else ()), use.fn)
+            return self.handle(FlowExpr("call", made, near[0].arguments if near else ()), use.fn)
         return ""
 
-    def handle(self, value: Expr, fn: Fn, depth: int = 0) -> str:
+    def handle(self, value: FlowExpr, fn: Fn, depth: int = 0) -> str:
         """The namespace of a node handle, or of a transport that was made with one; it begins with LOST where that is
         not known."""
         if depth > 6:
@@ -754,15 +758,15 @@ class Sites:
         """The namespace where all ways lead to the same."""
         return found[0] if len(set(found)) == 1 else LOST
 
-    def _unless_handle(self, value: Expr, fn: Fn) -> str:
+    def _unless_handle(self, value: FlowExpr, fn: Fn) -> str:
         """The node's own namespace for what only stands for a node; that of a handle from elsewhere is not known."""
         own = value.kind == "call" and tail(value.text).endswith("NodeHandle")
         known = self.calls.kinds_of(self.code.type_of(value, fn), fn)
         return LOST if "handle" in known and not own else ""
 
     @cached_property
-    def _resets(self) -> dict[Variable, list[tuple[Fn, Expr]]]:
-        found: dict[Variable, list[tuple[Fn, Expr]]] = {}
+    def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
+        found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
         for fn in self.code.functions:
             for call in fn.facts.calls:
                 if tail(call.callee) == "reset" and "." in call.callee and call.arguments:
@@ -770,7 +774,7 @@ class Sites:
                     found.setdefault(variable, []).append((fn, call.arguments[0]))
         return found
 
-    def _made_handle(self, arguments: tuple[Expr, ...], fn: Fn, depth: int) -> str:
+    def _made_handle(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int) -> str:
         if not arguments:
             return ""
         first = arguments[0]
@@ -785,7 +789,7 @@ class Sites:
                 return f"{base}/{below}" if base and base != "~" else f"~{below}" if base == "~" else below
         return base
 
-    def _namespace(self, value: Expr, fn: Fn) -> str:
+    def _namespace(self, value: FlowExpr, fn: Fn) -> str:
         """What a namespace is that is given to a handle."""
         text = self.values.of(value, fn)[0].text
         return LOST if text is None else text
@@ -848,13 +852,13 @@ class Sites:
                     if inner:
                         sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
                         types = {statement.type for statement in inner}
-                        use = Use(fn, inner[0].use.row, call)
+                        use = FrameworkCall(fn, inner[0].use.row, call)
                         kind = types.pop() if len(types) == 1 else ""
                         message = shown(call.arguments[0]) if call.arguments else ""
                         yield Statement(use, sites, kind, message, "", target.name)
                         break
 
-    def _statement(self, use: Use) -> Statement | None:
+    def _statement(self, use: FrameworkCall) -> Statement | None:
         receiver = self.calls.receiver_of(use)
         message = self.calls.argument(use, use.row.message)
         expression = shown(message)
@@ -864,7 +868,7 @@ class Sites:
         if sites:
             types = {site.type for site in sites if site.type}
             return Statement(use, sites, types.pop() if len(types) == 1 else "", expression)
-        kind = self.code.type_of(Expr("name", receiver), use.fn)
+        kind = self.code.type_of(FlowExpr("name", receiver), use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
         if not use.sure and not self._plausible(receiver, use):
@@ -876,7 +880,7 @@ class Sites:
         )
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
 
-    def _plausible(self, receiver: str, use: Use) -> bool:
+    def _plausible(self, receiver: str, use: FrameworkCall) -> bool:
         return len(use.call.arguments) <= 2
 
     def publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:

@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
-from ...facts.flow import Expr
+from ...facts.flow import FlowExpr
 from ..workspace import Workspace
 from .code import Fn, made_in, parts_of, tail
 from .join import Join, Running
@@ -202,7 +202,7 @@ class Seeing:
     def _reached(self) -> set[int]:
         return {number for one in self.join.running() for number in one.functions}
 
-    def _is_node(self, value: Expr, fn: Fn) -> bool:
+    def _is_node(self, value: FlowExpr, fn: Fn) -> bool:
         calls = self.join.calls
         if value.kind in ("keyword", "list") and value.parts:
             return any(self._is_node(part, fn) for part in value.parts)
@@ -246,5 +246,5 @@ class Seeing:
                     yield "the name of a parameter is not known"
 
 
-def _says(value: Expr, words: tuple[str, ...]) -> bool:
+def _says(value: FlowExpr, words: tuple[str, ...]) -> bool:
     return any(word in value.text for word in words) or any(_says(part, words) for part in value.parts)

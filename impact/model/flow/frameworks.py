@@ -30,7 +30,7 @@ class Also(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     unless: tuple[str, ...] = ()
 
 
-class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class FrameworkRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A row of the table. Spots (topic, type, ...) are in the order in which they are tried; see frameworks.toml."""
 
     framework: str
@@ -65,8 +65,8 @@ class Frameworks:
 
     def __init__(self, table: dict[str, Any]):
         """table: as frameworks.toml has it. Raises msgspec.ValidationError that names what is wrong."""
-        self.calls: dict[str, list[Row]] = {}
-        self.objects: dict[str, list[Row]] = {}
+        self.calls: dict[str, list[FrameworkRow]] = {}
+        self.objects: dict[str, list[FrameworkRow]] = {}
         self.kinds: dict[str, list[tuple[str, str]]] = {}
         self.types: dict[str, str] = dict(table.get("types", {}))
         self.generations: dict[str, int] = dict(table.get("generations", {}))
@@ -87,7 +87,7 @@ class Frameworks:
                 return kind
         return ""
 
-    def objects_of(self, name: str, python: bool = False) -> list[Row]:
+    def objects_of(self, name: str, python: bool = False) -> list[FrameworkRow]:
         """Rows about objects of a class, by its name as qualified as it is known. python: whether Python makes it."""
         return [
             row
@@ -106,13 +106,13 @@ def _ends(full: str, name: str) -> bool:
     return one[-len(other) :] == other or other[-len(one) :] == one
 
 
-def _row(raw: dict[str, Any]) -> Row:
+def _row(raw: dict[str, Any]) -> FrameworkRow:
     spots = (
         "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace",
         "remaps",
     )  # fmt: skip
     fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
-    return msgspec.convert({**raw, **fixed}, Row)
+    return msgspec.convert({**raw, **fixed}, FrameworkRow)
 
 
 @cache

@@ -11,9 +11,9 @@ from msgspec import structs
 from ...facts.flow import FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
-from .calls import Calls, Use
-from .code import Code, Fn, Source, made_in, tail
-from .defined import Defined
+from .calls import Calls, FrameworkCall
+from .code import CodeFile, FlowCode, Fn, made_in, tail
+from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, shown
 from .frameworks import Frameworks, frameworks
 from .graph import (
@@ -34,11 +34,11 @@ from .graph import (
 )
 from .loads import Loaded, loads
 from .names import NameRefused, canonical, ros1_name, ros2_name
-from .nodes import Built, Program, Reach
+from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .qos import qos_of
 from .started import Instance, instances
-from .types import Type, parsed
-from .values import Value, Values
+from .types import FlowType, parsed
+from .values import FlowValue, FlowValues
 
 _MOST_WAYS = 16
 _DEEPEST = 10
@@ -52,11 +52,11 @@ class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
     expressions are worth there. loaded: how the node loads this program, which is a nodelet then."""
 
-    program: Program
+    program: StartableProgram
     node: Node
     functions: set[int]
     classes: set[str]
-    values: Values
+    values: FlowValues
     instance: Instance | None = None
     loaded: Loaded | None = None
 
@@ -74,24 +74,24 @@ class Join:
         self,
         files: Mapping[str, FlowFile],
         package_of: Callable[[str], str],
-        built: Iterable[Built] = (),
+        built: Iterable[BuiltPackage] = (),
         ros: int = 2,
         table: Frameworks | None = None,
-        defined: Defined | None = None,
-        before: Code | None = None,
+        defined: DefinedInterfaces | None = None,
+        before: FlowCode | None = None,
     ):
         self.ros, self.built = ros, list(built)
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
-        sources = (Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
-        self.code = Code(sources, before)
+        sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
+        self.code = FlowCode(sources, before)
         self.calls = Calls(self.code, table or frameworks())
-        self.values = Values(self.calls)
-        self.sites = Sites(self.code, self.calls, self.values, defined or Defined())
-        self.reach = Reach(self.sites)
+        self.values = FlowValues(self.calls)
+        self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
+        self.reach = CodeReach(self.sites)
         self.triggers = self._triggers()
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
-        self._asked: dict[int, list[Value]] = {}
+        self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
         # With who runs it, so that nothing else comes by the same id().
@@ -171,7 +171,7 @@ class Join:
                 if part is not None:
                     yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
 
-    def _is_plugin(self, program: Program, name: str) -> bool:
+    def _is_plugin(self, program: StartableProgram, name: str) -> bool:
         """Whether a program is what pluginlib knows by a name."""
         wanted = self.plugins.get(name)
         if wanted is None:
@@ -181,7 +181,7 @@ class Join:
             return program.plugin == wanted or (same and tail(program.plugin) == tail(wanted))
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
-    def _starts(self, program: Program, start: Started) -> bool:
+    def _starts(self, program: StartableProgram, start: Started) -> bool:
         # pluginlib knows nodelets of all packages, and a launch file names that of the loader beside them.
         anywhere = bool(start.plugin.value) and start.package.value == "nodelet"
         if not anywhere and start.package.value not in (None, program.package):
@@ -195,17 +195,17 @@ class Join:
 
     def _kinds(self, cls) -> frozenset[str]:
         return self.calls.kinds_of(
-            Type(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source))
+            FlowType(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source))
         )
 
-    def _node(self, program: Program, named: list[Use]) -> Node:
+    def _node(self, program: StartableProgram, named: list[FrameworkCall]) -> Node:
         own = [use for use in named if tail(use.fn.facts.owner) == tail(program.plugin)] if program.plugin else []
         in_main = [use for use in named if use.fn in program.roots]
         # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
         made = [tail(name.partition("<")[0]) for root in program.roots for name, _, _ in made_in(root, self.code)]
         ranks = {name: place for place, name in reversed(list(enumerate(made)))}
 
-        def rank(use: Use) -> tuple[int, bool]:
+        def rank(use: FrameworkCall) -> tuple[int, bool]:
             written = self.calls.argument(use, use.row.topic)
             return ranks.get(tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
 
@@ -300,7 +300,9 @@ class Join:
 
     # The graph
 
-    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
+    def graph(
+        self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None
+    ) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
         `library` nodes, or to none."""
         running, missing = (self.running(), []) if launch is None else self.started(launch)
@@ -400,7 +402,7 @@ class Join:
             self._sites_of[key] = owner, site._replace(names=names, type=type_)
         return self._sites_of[key][1]
 
-    def _endpoint(self, site: Site, value: Value, type_: str, owner: Owner) -> Endpoint:
+    def _endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
         node = _node_of(owner)
         topic, how, reason = self.name(site, value, owner)
@@ -413,7 +415,7 @@ class Join:
             use.row.framework,
         )  # fmt: skip
 
-    def name(self, site: Site, value: Value, owner: Owner) -> tuple[str, How, str]:
+    def name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
         node = _node_of(owner)
         instance = owner.instance if isinstance(owner, Running) else None
@@ -476,7 +478,7 @@ class Join:
                 for type_ in _types(here, owner):
                     yield Publish(topic=topic, type=type_, reason=reason, **common)
 
-    def asked(self, use: Use) -> list[Value]:
+    def asked(self, use: FrameworkCall) -> list[FlowValue]:
         """The names of a parameter that is declared or read; the same in every node."""
         known = self._asked.get(id(use))
         if known is None:
@@ -484,7 +486,7 @@ class Join:
             self._asked[id(use)] = known
         return known
 
-    def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
+    def _parameters(self, use: FrameworkCall, owners: list[Owner]) -> Iterator[ParameterUse]:
         if not owners:
             return
         values = self.asked(use)
@@ -509,7 +511,7 @@ class _Owners:
             for number in one.functions:
                 self._by_function.setdefault(number, []).append(one)
 
-    def of(self, use: Use) -> list[Owner]:
+    def of(self, use: FrameworkCall) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
         found = self._by_function.get(id(use.fn), [])
         if self.launched or found:
@@ -566,7 +568,7 @@ def _node_of(owner: Owner) -> Node | None:
     return owner.node if isinstance(owner, Running) else owner
 
 
-def _place(use: Use) -> tuple[str, int]:
+def _place(use: FrameworkCall) -> tuple[str, int]:
     return use.fn.source.path, use.call.line
 
 
@@ -580,7 +582,7 @@ def _snake(name: str) -> str:
     return snake(name)
 
 
-def _nobody(source: Source) -> Fn:
-    from ...facts.flow import Function
+def _nobody(source: CodeFile) -> Fn:
+    from ...facts.flow import FlowFunction
 
-    return Fn(source, Function("", "", (), 0, 0))
+    return Fn(source, FlowFunction("", "", (), 0, 0))

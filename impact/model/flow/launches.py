@@ -23,7 +23,7 @@ _MOST = 300
 _MOST_ACTIONS = 5 * MOST_ACTIONS  # of all launch files together
 
 
-class Renamed(msgspec.Struct, frozen=True):
+class GivenRemapping(msgspec.Struct, frozen=True):
     """A remapping that a node is given. old: the full name it is about; written: as the launch file has it."""
 
     old: str
@@ -32,7 +32,7 @@ class Renamed(msgspec.Struct, frozen=True):
     line: int
 
 
-class Given(msgspec.Struct, frozen=True):
+class GivenParameter(msgspec.Struct, frozen=True):
     """A parameter that a node is given, by its name within the node."""
 
     name: str
@@ -40,7 +40,7 @@ class Given(msgspec.Struct, frozen=True):
     line: int
 
 
-class Start(msgspec.Struct, frozen=True):
+class LaunchedNode(msgspec.Struct, frozen=True):
     """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
     uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
     known, and so left empty. uncertain: why it may have another name, or may not be started at all.
@@ -51,8 +51,8 @@ class Start(msgspec.Struct, frozen=True):
     package: str
     names: tuple[str, ...]
     parameters: tuple[str, ...]
-    renamed: tuple[Renamed, ...]
-    given: tuple[Given, ...]
+    renamed: tuple[GivenRemapping, ...]
+    given: tuple[GivenParameter, ...]
     hidden: str
     hidden_parameters: str
     uncertain: tuple[str, ...]
@@ -65,7 +65,7 @@ class Launch(msgspec.Struct, frozen=True):
 
     path: str
     graph: Graph
-    starts: tuple[Start, ...]
+    starts: tuple[LaunchedNode, ...]
     missing: bool
     elsewhere: tuple[str, ...] = ()
 
@@ -156,14 +156,14 @@ def is_launch(path: str) -> bool:
 
 def _start(
     join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, sight: Sight
-) -> Start:  # fmt: skip
+) -> LaunchedNode:  # fmt: skip
     instance = one.instance
     assert instance is not None
     renamed = tuple(_renamed(sources, instance, join.ros))
     given = tuple(_given(sources, launch, instance.started, instance))
     names = {name for name in _names(join, one, instance) if name} if renamed and not sight.names else ()
     asked = _parameters(join, one) if (given or renamed) and not sight.parameters else ()
-    return Start(
+    return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         sight.names, sight.parameters, instance.uncertain,
     )  # fmt: skip
@@ -189,7 +189,7 @@ def _parameters(join: Join, one: Running) -> set[str]:
     return found
 
 
-def _renamed(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[Renamed]:
+def _renamed(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[GivenRemapping]:
     generation = instance.started.generation or ros
     namespace, _, own = instance.name.rpartition("/")
     for remap in instance.remaps:
@@ -207,17 +207,17 @@ def _renamed(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[Ren
                 old = ros2_name(rule.match, own, namespace or "/")
             except NameRefused:
                 continue
-        yield Renamed(old, written, path, remap.at.line)
+        yield GivenRemapping(old, written, path, remap.at.line)
 
 
-def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Instance) -> Iterator[Given]:
+def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Instance) -> Iterator[GivenParameter]:
     """The parameters that a node is given for itself: not those of a file's `/**`, which are for any node."""
     if start.generation == 1:
         below = f"{instance.name}/"
         for name, setting in launch.server.items():
             place = sources.place(setting.at.package, setting.at.path)
             if name.startswith(below) and place and not setting.conditions:
-                yield Given(name[len(below) :], place, setting.at.line)
+                yield GivenParameter(name[len(below) :], place, setting.at.line)
         return
     for setting in start.settings:
         if setting.conditions:
@@ -227,10 +227,10 @@ def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Ins
             continue
         place = sources.place(setting.at.package, setting.at.path)
         if place:
-            yield Given(setting.name, place, setting.at.line)
+            yield GivenParameter(setting.name, place, setting.at.line)
 
 
-def _in_file(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[Given]:
+def _in_file(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[GivenParameter]:
     head, _, inner = (setting.file.value or "").partition("/")
     found = head.startswith("$(find ")
     place = sources.place(head.removeprefix("$(find ").rstrip(")"), inner) if found else ""
@@ -239,7 +239,7 @@ def _in_file(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[
     for_all = file_values(setting, "")
     for name, entry in file_values(setting, full).items():
         if for_all.get(name) != entry:
-            yield Given(canonical(name), place, entry.line)
+            yield GivenParameter(canonical(name), place, entry.line)
 
 
-__all__ = ["Given", "Launch", "Renamed", "Start", "is_launch", "launches"]
+__all__ = ["GivenParameter", "GivenRemapping", "Launch", "LaunchedNode", "is_launch", "launches"]

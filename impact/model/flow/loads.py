@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from ...facts.flow import Call
-from .calls import Calls, Use
+from ...facts.flow import FlowCall
+from .calls import Calls, FrameworkCall
 from .code import Fn
 from .names import ros1_remapped
-from .values import NODE, Values
+from .values import NODE, FlowValues
 
 _DEEPEST = 4
 _MOST = 64
@@ -25,14 +25,14 @@ class Loaded(NamedTuple):
     name: str
     plugin: str
     remaps: tuple[tuple[str, str], ...]
-    use: Use
+    use: FrameworkCall
 
     def remapped(self, name: str) -> str:
         """The full name of a name that the nodelet uses."""
         return ros1_remapped(name, self.name, self.remaps)
 
 
-def loads(calls: Calls, functions: set[int], values: Values, node: str) -> Iterator[Loaded]:
+def loads(calls: Calls, functions: set[int], values: FlowValues, node: str) -> Iterator[Loaded]:
     """What a program loads. functions: id()s of those it runs; values: what expressions are worth in it; node: the full
     name of its node."""
     for use in calls.uses:
@@ -48,7 +48,7 @@ def loads(calls: Calls, functions: set[int], values: Values, node: str) -> Itera
                         yield Loaded(full, plugin.text, tuple(_remaps(calls, use, inside)), use)
 
 
-def _ways(calls: Calls, fn: Fn, functions: set[int], depth: int = 0) -> Iterator[dict[int, Call]]:
+def _ways(calls: Calls, fn: Fn, functions: set[int], depth: int = 0) -> Iterator[dict[int, FlowCall]]:
     """The calls through which a function is reached: for each way, the call by the id() of the function called."""
     number = 0
     for caller, call in calls.code.callers.get(id(fn), ()) if depth < _DEEPEST else ():
@@ -60,7 +60,7 @@ def _ways(calls: Calls, fn: Fn, functions: set[int], depth: int = 0) -> Iterator
         yield {}
 
 
-def _remaps(calls: Calls, use: Use, values: Values) -> Iterator[tuple[str, str]]:
+def _remaps(calls: Calls, use: FrameworkCall, values: FlowValues) -> Iterator[tuple[str, str]]:
     """What the map of remappings holds where it is given away: elements written since it was last emptied."""
     given = calls.argument(use, use.row.remaps)
     if given is None or given.kind != "name":

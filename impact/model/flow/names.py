@@ -57,7 +57,7 @@ def ros1_remapped(name: str, node: str, remaps: Iterable[tuple[str, str]]) -> st
     return table.get(plain, plain)
 
 
-class Rule(NamedTuple):
+class RemappingRule(NamedTuple):
     """A remapping rule of ROS 2: `node:kind://match:=replacement`, node and kind empty where the rule has none."""
 
     match: str
@@ -74,13 +74,13 @@ _KINDS = {"rostopic": "topic", "rosservice": "service"}
 _NODE_NAMES = ("__node", "__name")
 
 
-def ros2_rule(text: str) -> Rule | None:
+def ros2_rule(text: str) -> RemappingRule | None:
     """The remapping rule that `text` writes (`scan:=/lidar/scan`, `talker:__ns:=/a`), None when it writes none."""
     m = _RULE.match(text.strip())
     if m is None:
         return None
     kind = m["kind"] or ""
-    return Rule(m["match"], m["replacement"], m["node"] or "", _KINDS.get(kind, kind))
+    return RemappingRule(m["match"], m["replacement"], m["node"] or "", _KINDS.get(kind, kind))
 
 
 _SUBSTITUTION = re.compile(r"\{(\w*)\}")
@@ -117,7 +117,7 @@ def ros2_name(name: str, node: str, namespace: str) -> str:
     return full
 
 
-def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[Rule], kind: str = "topic") -> str:
+def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[RemappingRule], kind: str = "topic") -> str:
     """The full name after remapping: the first rule that matches holds, and none is applied to what it gives.
 
     node and namespace: as they are once ros2_node() has applied `__node` and `__ns`. kind: `topic` or `service`.
@@ -137,7 +137,7 @@ def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[Rule], k
     return full
 
 
-def ros2_node(name: str, namespace: str, rules: Iterable[Rule]) -> tuple[str, str]:
+def ros2_node(name: str, namespace: str, rules: Iterable[RemappingRule]) -> tuple[str, str]:
     """Name and namespace of a node after `__node` (or `__name`) and `__ns`; of each the first rule for it holds."""
     rules = tuple(rules)
     renamed = next((r.replacement for r in rules if r.match in _NODE_NAMES and r.node in ("", name)), name)

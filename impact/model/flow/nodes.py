@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from ...facts.flow import Expr
-from .code import Cls, Code, Fn, Source, made_in, tail
+from ...facts.flow import FlowExpr
+from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .endpoints import Sites
 from .types import parsed
 
 
-class Program(NamedTuple):
+class StartableProgram(NamedTuple):
     """Something that can be started. kind, executable and plugin as in Node; roots: where it begins; files: those it is
     built from, headers left out."""
 
@@ -25,7 +25,7 @@ class Program(NamedTuple):
     line: int
 
 
-class Built(NamedTuple):
+class BuiltPackage(NamedTuple):
     """What the build of one package tells. executables and libraries: target to its sources; components: class to the
     executables that are made to run it alone; scripts: name of an installed or executable Python file to its path,
     entry points with the function behind a colon; links: target to the targets of the workspace that it links. plugins:
@@ -40,7 +40,7 @@ class Built(NamedTuple):
     plugins: Mapping[str, str] = {}
 
 
-class Reach:
+class CodeReach:
     """What code can run once something is started."""
 
     def __init__(self, sites: Sites):
@@ -127,7 +127,7 @@ class Reach:
             known = self._edges[id(fn)] = (further, objects)
         return known
 
-    def _handed(self, value: Expr, fn: Fn) -> list[Fn]:
+    def _handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
         """Functions outside of classes that an argument hands on; methods are reached through their class."""
         if value.kind == "bind" and value.parts:
             value = value.parts[0]
@@ -141,7 +141,7 @@ def _points(type_: str) -> bool:
     return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
 
 
-def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
+def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterator[StartableProgram]:
     """Everything that can be started. kinds_of: a class's kinds by the table of frameworks."""
     by_path: dict[str, list[Fn]] = {}
     for fn in code.functions:
@@ -157,7 +157,7 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
             files = frozenset(_linked(name, package, sources))
             main = mains[0] if mains else None
             place = (main.source.path, main.facts.line) if main else (sources[0] if sources else "", 0)
-            yield Program(package.package, "executable", name, "", tuple(mains), files, *place)
+            yield StartableProgram(package.package, "executable", name, "", tuple(mains), files, *place)
         components = {name.removeprefix("::"): executables for name, executables in package.components.items()}
         loaded = [(name.removeprefix("::"), path) for name, path in exported.get(package.package, ())]
         registered = {name for name, _ in loaded}
@@ -170,7 +170,9 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
             roots = tuple(code.functions_of(cls)) if cls is not None else ()
             place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
             for executable in components.get(name) or ("",):
-                yield Program(package.package, kind, executable, name, roots, frozenset((path or place[0],)), *place)
+                yield StartableProgram(
+                    package.package, kind, executable, name, roots, frozenset((path or place[0],)), *place
+                )
         for name, where in package.scripts.items():
             path, _, function = where.partition(":")
             fns = by_path.get(path, ())
@@ -180,12 +182,12 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
                 meant = code.meant(function, fns[0].source)
                 roots += code.imported(meant if meant != function else f".{function}", fns[0].source)
             if roots:
-                yield Program(
+                yield StartableProgram(
                     package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line
                 )
 
 
-def _linked(name: str, package: Built, sources: Iterable[str]) -> Iterator[str]:
+def _linked(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:
     yield from sources
     seen, queue = {name}, list(package.links.get(name, ()))
     while queue:
@@ -196,7 +198,7 @@ def _linked(name: str, package: Built, sources: Iterable[str]) -> Iterator[str]:
             queue.extend(package.links.get(one, ()))
 
 
-def _class(code: Code, name: str, package: str, source: Source | None) -> Cls | None:
+def _class(code: FlowCode, name: str, package: str, source: CodeFile | None) -> Cls | None:
     """A class by the name that it is registered under in a file, or by the build."""
     wanted = parsed(name).name.removeprefix("::").split("::")
     found = [
@@ -210,7 +212,7 @@ def _class(code: Code, name: str, package: str, source: Source | None) -> Cls | 
     return found[0] if found else None
 
 
-def _loaded_as(cls: Cls, code: Code, kinds_of) -> str:
+def _loaded_as(cls: Cls, code: FlowCode, kinds_of) -> str:
     names = [tail(name) for name in code.base_names(cls)]
     if "Nodelet" in names or any(name.endswith("Nodelet") for name in names):
         return "nodelet"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-from ...facts.flow import Expr
-from .calls import Calls, Use
+from ...facts.flow import FlowExpr
+from .calls import Calls, FrameworkCall
 from .code import Fn, is_number, tail
 from .graph import Qos
-from .values import Values
+from .values import FlowValues
 
 # Profiles of rmw (https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-Settings.html).
 _PLAIN = Qos("reliable", "volatile", "keep_last", 10)
@@ -53,7 +53,7 @@ _UNITS = {
 }  # fmt: skip
 
 
-def qos_of(calls: Calls, values: Values, use: Use) -> Qos | None:
+def qos_of(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None:
     """The quality of service that a use asks for; None where its framework has none or it gives none.
 
     A queue of ROS 1 is its depth. What is not told is empty, so that nothing is judged by it.
@@ -77,14 +77,14 @@ def _fields(qos: Qos) -> dict:
     return {name: getattr(qos, name) for name in qos.__struct_fields__}
 
 
-def _number(value: Expr | None, fn: Fn, values: Values) -> int:
+def _number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
     if value is None:
         return -1
     text = values.of(value, fn)[0].text
     return int(text) if text and is_number(text) else -1
 
 
-def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
+def _of(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
     if depth > 6:
         return Qos()
     if value.kind == "number":
@@ -125,7 +125,7 @@ def _common(found: list[Qos]) -> Qos:
     return Qos(**first)
 
 
-def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
+def _built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
     """Profiles with settings behind them: `rclcpp::QoS(1).transient_local().reliable()`, `QoSProfile(depth=1, ...)`."""
     links = _links(value, fn)
     names = [name for name, _ in links]
@@ -168,7 +168,7 @@ def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos
     return Qos(**fields)
 
 
-def _made(first: Expr, fields: dict, fn: Fn, calls: Calls, values: Values, depth: int) -> None:
+def _made(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> None:
     """What a profile's constructor is given: a depth, a history, or another profile."""
     if first.kind in ("call", "make") and tail(first.text) in ("KeepLast", "KeepAll"):
         fields["history"] = "keep_all" if tail(first.text) == "KeepAll" else "keep_last"
@@ -183,7 +183,7 @@ def _made(first: Expr, fields: dict, fn: Fn, calls: Calls, values: Values, depth
         fields["depth"] = _number(first, fn, values)
 
 
-def _links(value: Expr, fn: Fn) -> list[tuple[str, tuple[Expr, ...] | None]]:
+def _links(value: FlowExpr, fn: Fn) -> list[tuple[str, tuple[FlowExpr, ...] | None]]:
     """The calls of a chain, the first one first, with their arguments; None for those that are not known."""
     if value.receiver is not None:
         return [*_links(value.receiver, fn), (tail(value.text), value.parts)]
@@ -191,7 +191,7 @@ def _links(value: Expr, fn: Fn) -> list[tuple[str, tuple[Expr, ...] | None]]:
     return [(tail(name), _arguments_of(value, names, place, fn)) for place, name in enumerate(names)]
 
 
-def _arguments_of(value: Expr, links: list[str], place: int, fn: Fn) -> tuple[Expr, ...] | None:
+def _arguments_of(value: FlowExpr, links: list[str], place: int, fn: Fn) -> tuple[FlowExpr, ...] | None:
     """The arguments of one call of a chain; None where they are not told apart from those of a chain like it."""
     if place == len(links) - 1:
         return value.parts
@@ -200,7 +200,7 @@ def _arguments_of(value: Expr, links: list[str], place: int, fn: Fn) -> tuple[Ex
     return found.pop() if len(found) == 1 else None
 
 
-def _set(field: str, value: Expr | None, fields: dict, fn: Fn, values: Values) -> None:
+def _set(field: str, value: FlowExpr | None, fields: dict, fn: Fn, values: FlowValues) -> None:
     """Gives a setting the value of an expression; it is not told where that is not known."""
     if field in ("deadline", "lease"):
         fields[field] = seconds(value, fn, values) if value is not None else None
@@ -209,7 +209,7 @@ def _set(field: str, value: Expr | None, fields: dict, fn: Fn, values: Values) -
     fields[field] = next((setting for word, setting in _WORDS[field] if words.endswith(word)), "")
 
 
-def seconds(value: Expr, fn: Fn, values: Values) -> float | None:
+def seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
     """A duration of rclcpp, rclpy or std::chrono in seconds; None for what is not written as numbers."""
     if value.kind == "other":
         literal = _LITERAL.fullmatch(value.text)
@@ -230,7 +230,7 @@ def seconds(value: Expr, fn: Fn, values: Values) -> float | None:
     return sum(found) if found else None
 
 
-def _set_later(found: Qos, name: str, fn: Fn, values: Values) -> Qos:
+def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
     """Settings that follow the making: `qos.best_effort();`, `qos.reliability = ...`. What is set under a condition
     only is not told."""
     fields = _fields(found)

@@ -25,14 +25,14 @@ class Step(NamedTuple):
     line: int
 
 
-class Reached(NamedTuple):
+class ReachedNode(NamedTuple):
     """A node that is reached, and the shortest way there."""
 
     node: str
     steps: tuple[Step, ...]
 
 
-class Reach:
+class DownstreamSearch:
     """Asks a graph what lies downstream."""
 
     def __init__(self, graph: Graph):
@@ -49,16 +49,16 @@ class Reach:
             if endpoint.role in ("client", "action client"):
                 self._calls.setdefault(endpoint.node, []).append(endpoint)
 
-    def from_topic(self, topic: str, role: str = "publisher", most: int = 200) -> list[Reached]:
+    def from_topic(self, topic: str, role: str = "publisher", most: int = 200) -> list[ReachedNode]:
         """Nodes that a message on a topic (or a request, by the sender's role) reaches, nearest first."""
         return self._walk(self._next(topic, role), most)
 
-    def from_node(self, node: str, most: int = 200) -> list[Reached]:
+    def from_node(self, node: str, most: int = 200) -> list[ReachedNode]:
         """Nodes downstream of all that a node sends, nearest first; the node itself is left out."""
         first = [step for topic, role in self._sent(node, None) for step in self._next(topic, role)]
         return [reached for reached in self._walk(first, most) if reached.node != node]
 
-    def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[Reached]:
+    def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[ReachedNode]:
         """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who
         sends them, which is left out."""
         first = [step for topic, role in sent for step in self._next(topic, role)]
@@ -77,15 +77,15 @@ class Reach:
                     others.append((publish.topic, "publisher"))
         return list(dict.fromkeys(own or others))
 
-    def _walk(self, first: Iterable[Step], most: int) -> list[Reached]:
-        found: dict[str, Reached] = {}
+    def _walk(self, first: Iterable[Step], most: int) -> list[ReachedNode]:
+        found: dict[str, ReachedNode] = {}
         queue: deque[tuple[Step, ...]] = deque((step,) for step in first)
         while queue and len(found) < most:
             steps = queue.popleft()
             last = steps[-1]
             if last.node in found:
                 continue
-            found[last.node] = Reached(last.node, steps)
+            found[last.node] = ReachedNode(last.node, steps)
             for topic, role in self._sent(last.node, last):
                 queue.extend((*steps, step) for step in self._next(topic, role) if step.node not in found)
         return list(found.values())

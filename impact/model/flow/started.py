@@ -10,7 +10,7 @@ from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import follow
 from ..launch.result import Launched, Remap, Started
 from ..workspace import Workspace
-from .names import NameRefused, Rule, ros1_remapped, ros2_remapped
+from .names import NameRefused, RemappingRule, ros1_remapped, ros2_remapped
 
 
 class InWorkspace:
@@ -95,7 +95,7 @@ class Instance(NamedTuple):
         rules = []
         for old, new in pairs:
             node, colon, match = old.partition(":")
-            rules.append(Rule(match if colon else old, new, node if colon else ""))
+            rules.append(RemappingRule(match if colon else old, new, node if colon else ""))
         return ros2_remapped(name, own, namespace or "/", rules, kind)
 
 

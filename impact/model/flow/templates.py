@@ -11,18 +11,18 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.cpp.names import split_at_commas
-from .code import Cls, Code, Fn, Source, made_in, tail
+from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .types import parsed
 
 _DEEPEST = 4
 
 
-class Given(NamedTuple):
+class TemplateArgument(NamedTuple):
     """A type that is given for a parameter. text: as written; source, scope: where. cls: the class that gives it by
     deriving, or that holds such an object, empty for none; fn: the function that does, by its id(), 0 for none."""
 
     text: str
-    source: Source
+    source: CodeFile
     scope: str
     cls: str = ""
     fn: int = 0
@@ -31,14 +31,14 @@ class Given(NamedTuple):
 class Templates:
     """Asks a body of code for the parameters of its templates."""
 
-    def __init__(self, code: Code):
+    def __init__(self, code: FlowCode):
         self.code = code
 
     def has(self, name: str, fn: Fn) -> bool:
         """Whether a name is, in a function, the parameter of a template around it."""
         return name.isidentifier() and self._place(name, fn) is not None
 
-    def given(self, name: str, fn: Fn, depth: int = 0) -> Iterator[Given]:
+    def given(self, name: str, fn: Fn, depth: int = 0) -> Iterator[TemplateArgument]:
         """What is given for the parameter of a template that a name is in a function."""
         place = self._place(name, fn)
         if place is None or depth > _DEEPEST:
@@ -69,34 +69,34 @@ class Templates:
                 return (owner, number) if outside and owner is not None else (one, number)
         return None
 
-    def _of_callers(self, fn: Fn, number: int) -> Iterator[tuple[Given, Fn | None]]:
+    def _of_callers(self, fn: Fn, number: int) -> Iterator[tuple[TemplateArgument, Fn | None]]:
         for caller, call in self.code.callers.get(id(fn), ()):
             types = split_at_commas(call.types) if call.types else []
             if number < len(types):
-                yield Given(types[number], caller.source, caller.scope, "", id(caller)), caller
+                yield TemplateArgument(types[number], caller.source, caller.scope, "", id(caller)), caller
 
-    def _of_class(self, cls: Cls, number: int, depth: int = 0) -> Iterator[tuple[Given, Fn | None]]:
+    def _of_class(self, cls: Cls, number: int, depth: int = 0) -> Iterator[tuple[TemplateArgument, Fn | None]]:
         for arguments, given, around in self._instances.get(tail(cls.name), ()) if depth <= _DEEPEST else ():
             if number < len(arguments) and self.code.class_of(given.text, given.source, given.scope) is cls:
                 yield given._replace(text=arguments[number]), around
 
-    def _class(self, given: Given) -> Cls | None:
+    def _class(self, given: TemplateArgument) -> Cls | None:
         return self.code.class_of(given.cls, given.source) if given.cls else None
 
     @cached_property
-    def _instances(self) -> dict[str, list[tuple[tuple[str, ...], Given, Fn | None]]]:
+    def _instances(self) -> dict[str, list[tuple[tuple[str, ...], TemplateArgument, Fn | None]]]:
         """Uses of class templates by the last part of their name: arguments, the name with who uses it, and the
         function it stands in."""
-        found: dict[str, list[tuple[tuple[str, ...], Given, Fn | None]]] = {}
+        found: dict[str, list[tuple[tuple[str, ...], TemplateArgument, Fn | None]]] = {}
         templates = {tail(c.name) for classes in self.code.classes.values() for c in classes if c.facts.types}
         if not templates:
             return found
 
-        def note(text: str, source: Source, scope: str, cls: str = "", fn: Fn | None = None) -> None:
+        def note(text: str, source: CodeFile, scope: str, cls: str = "", fn: Fn | None = None) -> None:
             if "<" in text:
                 kind = parsed(text)
                 if kind.arguments and tail(kind.name) in templates:
-                    given = Given(kind.name, source, scope, cls, id(fn) if fn is not None else 0)
+                    given = TemplateArgument(kind.name, source, scope, cls, id(fn) if fn is not None else 0)
                     found.setdefault(tail(kind.name), []).append((kind.arguments, given, fn))
 
         for source in self.code.sources:

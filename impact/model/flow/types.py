@@ -26,18 +26,18 @@ _MESSAGE_ENDINGS = ("ConstSharedPtr", "ConstPtr", "SharedPtr", "Ptr")
 _SPACE = re.compile(r"\s+")
 
 
-class Type(NamedTuple):
+class FlowType(NamedTuple):
     """name: qualified as written, without template arguments. arguments: template arguments as written."""
 
     name: str
     arguments: tuple[str, ...] = ()
 
 
-UNKNOWN = Type("")
+UNKNOWN = FlowType("")
 
 
 @lru_cache(maxsize=20_000)
-def parsed(text: str) -> Type:
+def parsed(text: str) -> FlowType:
     """What a type is of once qualifiers, references, smart pointers, `::SharedPtr` and containers are taken off.
 
     text: in C++ or Python. Gives UNKNOWN for `auto` and what is no type.
@@ -59,7 +59,7 @@ def parsed(text: str) -> Type:
             return parsed(arguments[0])
         if bare in _CONTAINERS:
             return parsed(arguments[-1] if bare in ("map", "unordered_map", "pair", "Dict") else arguments[0])
-    return Type(name.replace(" ", ""), arguments)
+    return FlowType(name.replace(" ", ""), arguments)
 
 
 def _template(text: str) -> tuple[str, tuple[str, ...], str]:

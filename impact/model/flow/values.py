@@ -7,9 +7,9 @@ from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
-from ...facts.flow import Call, Expr
+from ...facts.flow import FlowCall, FlowExpr
 from .arguments import CommandLine
-from .calls import Calls, Use
+from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, parameter_of, parts_of, tail
 from .graph import How
 
@@ -41,7 +41,7 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
-class Value(NamedTuple):
+class FlowValue(NamedTuple):
     """text: what it is worth, None when it is not known; reason says why then. parameter: whose default it is."""
 
     text: str | None
@@ -50,7 +50,7 @@ class Value(NamedTuple):
     parameter: str = ""
 
 
-class Values:
+class FlowValues:
     """Evaluates expressions in the functions of a body of code."""
 
     def __init__(
@@ -58,7 +58,7 @@ class Values:
         calls: Calls,
         settings: Mapping[str, str] | None = None,
         arguments: Sequence[str] | None = None,
-        way: Mapping[int, Call] | None = None,
+        way: Mapping[int, FlowCall] | None = None,
         within: Collection[int] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
@@ -70,45 +70,45 @@ class Values:
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
 
-    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
+    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments."""
         return self._other(settings, arguments, self.way, self.within)
 
-    def run(self, functions: Collection[int]) -> Values:
+    def run(self, functions: Collection[int]) -> FlowValues:
         """The same code where only some functions run, by their id()s: what others pass to them does not count."""
         return self._other(self.settings, self.arguments, self.way, functions)
 
-    def called(self, way: Mapping[int, Call]) -> Values:
+    def called(self, way: Mapping[int, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the id() of the function called."""
         return self._other(self.settings, self.arguments, way, self.within) if way else self
 
-    def _other(self, *given) -> Values:
-        other = Values(self.calls, *given)
+    def _other(self, *given) -> FlowValues:
+        other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
         other._budget = self._budget
         return other
 
-    def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
+    def of(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
         """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
         found = list(dict.fromkeys(self._of(value, fn, line, ())))
         self._budget[0] -= most - max(self._left, 0)
         known = [one for one in found if one.text is not None]
-        return known or found[:1] or [Value(None, "unresolved", "no value is given")]
+        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
-    def _of(self, value: Expr | None, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _of(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
-            yield Value(None, "unresolved", "no value is given")
+            yield FlowValue(None, "unresolved", "no value is given")
             return
         self._left -= 1
         if len(seen) > _DEEPEST or self._left < 0:
-            yield Value(None, "unresolved", "too many steps")
+            yield FlowValue(None, "unresolved", "too many steps")
             return
         kind = value.kind
         if kind in ("text", "number"):
-            yield Value(value.text)
+            yield FlowValue(value.text)
         elif kind == "name":
             yield from self._name(value.text, fn, line, seen)
         elif kind == "join":
@@ -126,9 +126,9 @@ class Values:
             yield from self._element(value, fn, line, seen)
         else:
             what = value.text or kind
-            yield Value(None, "unresolved", f"`{what[:60]}` is not followed")
+            yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
 
-    def _joined(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _joined(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         pieces = [list(dict.fromkeys(self._of(part, fn, line, seen)))[:_MOST] for part in value.parts]
         for number, row in enumerate(product(*pieces)):
             if number >= _MOST:
@@ -138,34 +138,34 @@ class Values:
                 yield unknown
                 continue
             if sum(len(one.text or "") for one in row) > _LONGEST:
-                yield Value(None, "unresolved", f"longer than {_LONGEST:,} characters")
+                yield FlowValue(None, "unresolved", f"longer than {_LONGEST:,} characters")
                 continue
             hows = {one.how for one in row}
             known: list[How] = [how for how in _LEAST if how in hows]
             how = known[0] if known else _LEAST[-1]
             named = next((one.parameter for one in row if one.parameter), "")
-            yield Value("".join(one.text or "" for one in row), how, "", named)
+            yield FlowValue("".join(one.text or "" for one in row), how, "", named)
 
     @cached_property
     def command_line(self) -> CommandLine:
         """What of the code is the command line."""
         return CommandLine(self.code)
 
-    def _element(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _element(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         container, index = value.parts[0], value.parts[-1]
         places = self.command_line.places(container, index, fn) if len(value.parts) == 2 else None
         if places is not None:
             if self.arguments is None:
-                yield Value(None, "unresolved", "an argument of the command line")
+                yield FlowValue(None, "unresolved", "an argument of the command line")
             else:
                 for place in range(max(places.start, 1), min(places.stop, len(self.arguments) + 1)):
-                    yield Value(self.arguments[place - 1], "given")
+                    yield FlowValue(self.arguments[place - 1], "given")
         elif container.kind == "call" and tail(container.text) in _TELLS_TOPIC and container.parts:
             yield from self._of(container.parts[0], fn, line, seen)
         else:
             yield from self._elements(container, fn, line, seen)
 
-    def rows(self, value: Expr, fn: Fn, depth: int = 0) -> list[Expr]:
+    def rows(self, value: FlowExpr, fn: Fn, depth: int = 0) -> list[FlowExpr]:
         """The lists that a list of lists holds where it is written; empty where it is none, or not written once."""
         if value.kind == "list":
             return list(value.parts) if value.parts and all(part.kind == "list" for part in value.parts) else []
@@ -175,7 +175,7 @@ class Values:
                 return self.rows(written[0][1].value, written[0][0], depth + 1)
         return []
 
-    def _elements(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value.kind == "list":
             for part in value.parts:
                 yield from self._of(part, fn, line, seen)
@@ -193,9 +193,9 @@ class Values:
                     for argument in call.arguments[:1]:
                         yield from self._of(argument, fn, call.line, (*seen, variable))
                 return
-        yield Value(None, "unresolved", f"an element of `{value.text or value.kind}`")
+        yield FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")
 
-    def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         parts = parts_of(path)
         if "." in path and parts[-1] in _SAME:
             yield from self._name(path.rpartition(".")[0], fn, line, seen)
@@ -207,15 +207,15 @@ class Values:
         if variable in seen:
             return
         for text, how in self.command_line.parsed(path, fn, self.arguments) if "." in path else ():
-            yield Value(text, "given" if how == "given" else "default")
+            yield FlowValue(text, "given" if how == "given" else "default")
             return
         found = list(self.of_variable(variable, fn, (*seen, variable)))
         if found:
             yield from found
         else:
-            yield Value(None, "unresolved", f"nothing tells what `{path}` is")
+            yield FlowValue(None, "unresolved", f"nothing tells what `{path}` is")
 
-    def of_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[Value]:
+    def of_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
         if variable.kind == "member":
             for cls in self.code.classes.get(tail(variable.owner), ()):
@@ -236,7 +236,7 @@ class Values:
             elif each.operator == "for":
                 yield from self._elements(each.value, writer, each.line, seen)
             elif each.operator == "+=":
-                yield Value(None, "unresolved", f"`{variable.name}` is put together in steps")
+                yield FlowValue(None, "unresolved", f"`{variable.name}` is put together in steps")
         for use in self.filled.get(variable, ()):
             yield from self._parameter(use, seen)
         if not self.code.writes(variable) or variable.kind == "local":
@@ -250,7 +250,7 @@ class Values:
                         yield from self._of(place[1].default, one, one.facts.line, seen)
                     break
 
-    def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+    def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What functions write into a variable that is passed to them by reference."""
         if len(seen) > _FAR:
             return  # from hand to hand: a walk over everything that is passed on would not end in time
@@ -262,7 +262,7 @@ class Values:
                     if inner not in seen:
                         yield from self.written(inner, (*seen, inner))
 
-    def written(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+    def written(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What is written into a variable, where it stands, or fills it from a parameter."""
         for writer, each in self.code.writes(variable):
             if each.operator == "=":
@@ -271,7 +271,7 @@ class Values:
             yield from self._parameter(use, seen)
         yield from self._by_reference(variable, seen)
 
-    def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[Value]:
+    def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         sources = [fn.source, *(s for s in self.code.sources if s.package == fn.source.package and s is not fn.source)]
         for source in sources:
@@ -288,7 +288,7 @@ class Values:
             if found_class is not None:
                 yield from self.of_variable(Variable("member", found_class.name, member), fn, seen)
 
-    def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[Value]:
+    def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter."""
         number = 0
         only = self.way.get(id(fn))
@@ -315,15 +315,15 @@ class Values:
                     number += 1
                     yield from self._of(argument, caller, line, seen)
         if not number:
-            yield Value(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+            yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _runs(self, fn: Fn) -> bool:
         return self.within is None or id(fn) in self.within
 
     @cached_property
-    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
+    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
         """Constructors that initialise a base class of the code: name of the base to function, arguments and line."""
-        found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
+        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.code.functions:
             owner = self.code.owner_of(fn) if fn.facts.owner else None
             if owner is None:
@@ -339,14 +339,14 @@ class Values:
                     found.setdefault(cls.name, []).append((fn, made[1], each.line))
         return found
 
-    def _call(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+    def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         last = tail(value.text)
         head = value.text.rpartition(".")[0] if "." in value.text else ""
         if last in _NODE_NAME and not value.parts:
-            yield Value(NODE)
+            yield FlowValue(NODE)
             return
         if last in _NODE_NAMESPACE and not value.parts:
-            yield Value(NAMESPACE)
+            yield FlowValue(NAMESPACE)
             return
         if last in _SAME and head:
             if value.receiver is not None and value.receiver.kind == "call":
@@ -366,13 +366,13 @@ class Values:
             return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
-            yield from self._joined(Expr("join", "", (first, Expr("text", "/"), second)), fn, line, seen)
+            yield from self._joined(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._inner(value.text, fn, line, seen, value.parts)
 
     def _inner(
-        self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[Expr, ...] | None = None
-    ) -> Iterator[Value]:
+        self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
+    ) -> Iterator[FlowValue]:
         """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
         near = [call for call in fn.facts.calls if call.callee == callee]
         near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
@@ -392,15 +392,15 @@ class Values:
                     returned = True
                     yield from self._of(each.value, target, each.line, (*seen, ("returns", id(target))))
         if not returned:
-            yield Value(None, "unresolved", f"what `{callee}` gives is not known")
+            yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
-    def _parameter(self, use: Use, seen: tuple) -> Iterator[Value]:
+    def _parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
         names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
         name = names[0] if names and names[0] is not None else ""
         given = self.settings.get(name.lstrip("~").lstrip("/")) if name else None
         if given is not None:
-            yield Value(given, "launch", "", name)
+            yield FlowValue(given, "launch", "", name)
             return
         default = self.calls.argument(use, use.row.default) if use.row.default else None
         target = self.calls.argument(use, use.row.variable) if use.row.variable else None
@@ -409,7 +409,7 @@ class Values:
                 if one.text is None:
                     yield one
                 else:
-                    yield Value(one.text, "default", "", name or one.parameter)
+                    yield FlowValue(one.text, "default", "", name or one.parameter)
             return
         yielded = False
         mark = ("parameter", name)
@@ -422,12 +422,12 @@ class Values:
                     yield one
         if not yielded:
             reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
-            yield Value(None, "unresolved", reason, name)
+            yield FlowValue(None, "unresolved", reason, name)
 
     @cached_property
-    def declared(self) -> dict[str, list[Use]]:
+    def declared(self) -> dict[str, list[FrameworkCall]]:
         """Declarations of parameters and reads with a default, by their literal names."""
-        found: dict[str, list[Use]] = {}
+        found: dict[str, list[FrameworkCall]] = {}
         for use in self.calls.uses:
             if use.row.does != "parameter" or self.calls.argument(use, use.row.default) is None:
                 continue
@@ -437,9 +437,9 @@ class Values:
         return found
 
     @cached_property
-    def filled(self) -> dict[Variable, list[Use]]:
+    def filled(self) -> dict[Variable, list[FrameworkCall]]:
         """Variables that a call fills with the value of a parameter."""
-        found: dict[Variable, list[Use]] = {}
+        found: dict[Variable, list[FrameworkCall]] = {}
         for use in self.calls.uses:
             if use.row.does == "parameter" and use.row.variable:
                 target = self.calls.argument(use, use.row.variable)
@@ -454,7 +454,7 @@ def beside(topic: str, name: str) -> str:
     return f"{head}{slash}{name}"
 
 
-def _argument(arguments: tuple[Expr, ...], place: int, name: str) -> Expr | None:
+def _argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
     for argument in arguments:
         if argument.kind == "keyword" and argument.text == name and argument.parts:
             return argument.parts[0]

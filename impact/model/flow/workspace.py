@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from ...facts.extract import Gathered, gather
+from ...facts.extract import ExtractedFacts, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
 from ...facts.store import encodable
@@ -17,7 +17,7 @@ from ...source_keys import code_stamp
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
 from .callers import Callers, callers
-from .defined import Defined
+from .defined import DefinedInterfaces
 from .file_selection import code_kinds
 from .graph import Graph
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     # What is remembered is read without them.
     from .join import Join
     from .launches import Launch
-    from .nodes import Built
+    from .nodes import BuiltPackage
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset(
@@ -86,7 +86,7 @@ def linked(tree, store, jobs: int | None = None, progress: Progress | None = Non
     return link(tree, gathered, store, None, Watched(), jobs)
 
 
-def facts_of(workspace: Workspace) -> Gathered:
+def facts_of(workspace: Workspace) -> ExtractedFacts:
     """The flow facts of a workspace: those gathered with it, or else read now."""
     main = workspace.gathered
     if main.second is None:
@@ -106,9 +106,9 @@ def code_of(workspace: Workspace) -> dict[str, str]:
     return found
 
 
-def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Built]:
+def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[BuiltPackage]:
     """What the build of each package makes. files: flow facts by path."""
-    from .nodes import Built
+    from .nodes import BuiltPackage
 
     libraries = {
         target.name: target.sources
@@ -135,7 +135,7 @@ def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Bu
             for target in targets
             if target.kind == "executable" and (target.sources or target.name not in running)
         }
-        yield Built(
+        yield BuiltPackage(
             package.name, executables, libraries, components, _scripts(package, files), links, _plugins(package)
         )
 
@@ -187,7 +187,7 @@ def joined(workspace: Workspace) -> Join:
     gathered.preload(packages)
     facts = {path: gathered.facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
-    defined = Defined(workspace.interface_names, workspace.ros)
+    defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
     return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros, defined=defined)
 
 

@@ -10,13 +10,13 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from ....edges.dispatch import methods_of
-from ...facts.launch.actions import Action, Piece, Value, literal
+from ...facts.launch.actions import Action, Value, ValuePart, literal
 from ...facts.launch.flow import substitutions
-from ...facts.launch.parameter_files import Entry, scalar
-from .result import At, Remap, Setting, SettingFile, Sources, Unresolved
+from ...facts.launch.parameter_files import ParameterEntry, scalar
+from .result import LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, UnresolvedPart
 from .text import (
     CannotTell,
-    Text,
+    LaunchText,
     evaluate,
     every,
     flag,
@@ -31,24 +31,24 @@ from .text import (
 )
 
 
-class Scope:
+class ActionScope:
     """What holds where an action runs. open: how many undecided conditions stood when it began."""
 
     __slots__ = ("arguments", "constants", "environment", "namespace", "open", "private", "remaps", "settings")
 
-    def __init__(self, arguments: dict[str, Text], environment: dict[str, Text], open_: int):
+    def __init__(self, arguments: dict[str, LaunchText], environment: dict[str, LaunchText], open_: int):
         self.arguments = arguments
         self.environment = environment
         self.namespace = known("")
         self.remaps: list[Remap] = []
-        self.settings: list[Setting | SettingFile] = []
+        self.settings: list[LaunchParameter | SettingFile] = []
         self.private: list[Action] = []
         self.constants: set[str] = set()
         self.open = open_
 
-    def inner(self, open_: int) -> Scope:
+    def inner(self, open_: int) -> ActionScope:
         """A copy, whose changes do not reach this one."""
-        scope = Scope(dict(self.arguments), dict(self.environment), open_)
+        scope = ActionScope(dict(self.arguments), dict(self.environment), open_)
         scope.namespace = self.namespace
         scope.remaps = list(self.remaps)
         scope.settings = list(self.settings)
@@ -61,46 +61,46 @@ class Rewrite(NamedTuple):
     """A parameter file that is changed before it is read. root: the key all is put below, empty for none. changes: old
     and new, which are keys and the values they get or, where is_text, texts wherever they stand."""
 
-    source: Text
-    root: Text
-    changes: tuple[tuple[Text, Text], ...]
+    source: LaunchText
+    root: LaunchText
+    changes: tuple[tuple[LaunchText, LaunchText], ...]
     is_text: bool
 
 
 class Filling:
     """Where a launch stands: the file it reads, and what holds there. package and path: of that file."""
 
-    def __init__(self, sources: Sources, scope: Scope, generation: int):
+    def __init__(self, sources: LaunchSources, scope: ActionScope, generation: int):
         self.sources = sources
         self.scope = scope
         self.generation = generation
         self.package = ""
         self.path = ""
         self.rewrites: dict[str, Rewrite] = {}
-        self._changed: dict[tuple[int, Rewrite], tuple[tuple[Entry, ...], tuple[Entry, ...]]] = {}
-        self.unresolved: list[Unresolved] = []
+        self._changed: dict[tuple[int, Rewrite], tuple[tuple[ParameterEntry, ...], tuple[ParameterEntry, ...]]] = {}
+        self.unresolved: list[UnresolvedPart] = []
 
-    def at(self, line: int) -> At:
-        return At(self.package, self.path, line)
+    def at(self, line: int) -> ShareLine:
+        return ShareLine(self.package, self.path, line)
 
     def miss(self, line: int, what: str, *reasons: str) -> None:
         """Lists what could not be followed, once."""
-        unresolved = Unresolved(self.at(line), what, reasons)
+        unresolved = UnresolvedPart(self.at(line), what, reasons)
         if unresolved not in self.unresolved[-20:]:
             self.unresolved.append(unresolved)
 
-    def told(self, text: Text, line: int, what: str) -> Text:
+    def told(self, text: LaunchText, line: int, what: str) -> LaunchText:
         """The text; where it is not known that is listed."""
         if text.value is None:
             self.miss(line, f"{what} `{text.shown}`", *text.reasons)
         return text
 
-    def substituted(self, entry: Entry) -> Entry:
+    def substituted(self, entry: ParameterEntry) -> ParameterEntry:
         """An entry whose keys or values hold substitutions, filled in where that can be done."""
         if not isinstance(entry.value, list | dict) and "$(" not in f"{entry.path}{entry.value}":
             return entry
         path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
-        return Entry(path, self.filled_value(entry.value), entry.line)
+        return ParameterEntry(path, self.filled_value(entry.value), entry.line)
 
     def filled(self, text: str) -> str:
         made = self.text(substitutions(text, self.generation))
@@ -115,7 +115,7 @@ class Filling:
             return {self.filled(key): self.filled_value(item) for key, item in value.items()}
         return value
 
-    def entries(self, file: str, line: int) -> tuple[Entry, ...] | None:
+    def entries(self, file: str, line: int) -> tuple[ParameterEntry, ...] | None:
         """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
         rewrite = self.rewrites.get(file)
         if rewrite is not None:
@@ -136,7 +136,7 @@ class Filling:
             self.miss(line, f"parameters `{file}`, line {problem.line}", problem.message)
         return found.entries
 
-    def _rewritten(self, entries: tuple[Entry, ...], rewrite: Rewrite) -> tuple[Entry, ...]:
+    def _rewritten(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
         """The same for all nodes that are given one file with one rewrite."""
         key = id(entries), rewrite
         known = self._changed.get(key)
@@ -152,13 +152,13 @@ class Filling:
         inner = posixpath.normpath(m[2].lstrip("/")) if m[2].strip("/") else ""
         return None if inner.startswith("..") or not inner else (m[1], inner)
 
-    def text(self, value: Value) -> Text:
+    def text(self, value: Value) -> LaunchText:
         """A value with its substitutions filled in."""
         if len(value) == 1:
             return self.piece(value[0])
         return together([self.piece(piece) for piece in value])
 
-    def piece(self, piece: Piece) -> Text:
+    def piece(self, piece: ValuePart) -> LaunchText:
         if piece.kind == "text":
             return known(piece.text)
         if piece.kind == "other":
@@ -168,13 +168,13 @@ class Filling:
             return unknown(piece.kind, f"`{piece.kind}` is not filled in")
         return maker(self, piece)
 
-    def named(self, piece: Piece) -> tuple[Text, tuple[Value, ...]]:
+    def named(self, piece: ValuePart) -> tuple[LaunchText, tuple[Value, ...]]:
         """A piece's name, and its other parts."""
         if piece.text:
             return known(piece.text), piece.parts
         return (self.text(piece.parts[0]), piece.parts[1:]) if piece.parts else (known(""), ())
 
-    def fill_arg(self, piece: Piece) -> Text:
+    def fill_arg(self, piece: ValuePart) -> LaunchText:
         name, rest = self.named(piece)
         if name.value is None:
             return unknown(name.shown, *name.reasons)
@@ -186,7 +186,7 @@ class Filling:
             return default._replace(assumed=every((default.assumed, (name.value,))))
         return unknown(name.value, f"argument `{name.value}` has no value")
 
-    def fill_env(self, piece: Piece) -> Text:
+    def fill_env(self, piece: ValuePart) -> LaunchText:
         name, rest = self.named(piece)
         if name.value is None:
             return unknown(name.shown, *name.reasons)
@@ -198,7 +198,7 @@ class Filling:
             return default._replace(assumed=every((default.assumed, (f"${name.value}",))))
         return unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
 
-    def fill_find(self, piece: Piece) -> Text:
+    def fill_find(self, piece: ValuePart) -> LaunchText:
         name, _ = self.named(piece)
         if name.value is None:
             return unknown(f"$({piece.kind} {name.shown})", *name.reasons)
@@ -206,32 +206,32 @@ class Filling:
 
     fill_prefix = fill_find
 
-    def fill_executable(self, piece: Piece) -> Text:
+    def fill_executable(self, piece: ValuePart) -> LaunchText:
         name, package = (self.text(part) for part in piece.parts[:2])
         return together((known("$(prefix "), package, known(")/lib/"), package, known("/"), name))
 
-    def fill_program(self, piece: Piece) -> Text:
+    def fill_program(self, piece: ValuePart) -> LaunchText:
         return self.named(piece)[0]
 
-    def fill_dirname(self, piece: Piece) -> Text:
+    def fill_dirname(self, piece: ValuePart) -> LaunchText:
         folder = posixpath.dirname(self.path)
         return known(f"$(find {self.package})" + (f"/{folder}" if folder else ""))
 
-    def fill_filename(self, piece: Piece) -> Text:
+    def fill_filename(self, piece: ValuePart) -> LaunchText:
         return known(f"$(find {self.package})/{self.path}")
 
-    def fill_anon(self, piece: Piece) -> Text:
+    def fill_anon(self, piece: ValuePart) -> LaunchText:
         name, _ = self.named(piece)
-        return Text(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
+        return LaunchText(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
 
-    def fill_command(self, piece: Piece) -> Text:
+    def fill_command(self, piece: ValuePart) -> LaunchText:
         return unknown(show((piece,)), "it is the output of a command")
 
-    def fill_content(self, piece: Piece) -> Text:
+    def fill_content(self, piece: ValuePart) -> LaunchText:
         return unknown(show((piece,)), "it is the content of a file")
 
-    def fill_join(self, piece: Piece) -> Text:
-        texts: list[Text] = []
+    def fill_join(self, piece: ValuePart) -> LaunchText:
+        texts: list[LaunchText] = []
         for part in piece.parts:
             text = self.text(part)
             if (text.value is not None and text.value[:1] == "/") or (text.value or "").startswith("$("):
@@ -243,28 +243,28 @@ class Filling:
                 for t in texts[:-1]]  # fmt: skip
         return together([*done, texts[-1]], "/")
 
-    def fill_equals(self, piece: Piece) -> Text:
+    def fill_equals(self, piece: ValuePart) -> LaunchText:
         left, right = (self.text(part) for part in piece.parts[:2])
         both = together((left, right))
         if both.value is None:
             return both._replace(shown=show((piece,)))
         return known(flag(left.value == right.value), both.assumed)
 
-    def fill_in(self, piece: Piece) -> Text:
+    def fill_in(self, piece: ValuePart) -> LaunchText:
         texts = [self.text(part) for part in piece.parts]
         both = together(texts)
         if both.value is None:
             return both._replace(shown=show((piece,)))
         return known(flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
 
-    def fill_not(self, piece: Piece) -> Text:
+    def fill_not(self, piece: ValuePart) -> LaunchText:
         text = self.text(piece.parts[0]) if piece.parts else known("")
         truth = truth_of(text)
         if truth is None:
             return unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
         return known(flag(not truth), text.assumed)
 
-    def fill_and(self, piece: Piece) -> Text:
+    def fill_and(self, piece: ValuePart) -> LaunchText:
         """`and` and `or`: what decides them alone is enough."""
         deciding = piece.kind == "or"
         texts = [self.text(part) for part in piece.parts]
@@ -278,7 +278,7 @@ class Filling:
 
     fill_or = fill_and
 
-    def fill_choose(self, piece: Piece) -> Text:
+    def fill_choose(self, piece: ValuePart) -> LaunchText:
         asked = self.text(piece.parts[0])
         truth = truth_of(asked)
         if truth is None:
@@ -290,7 +290,7 @@ class Filling:
         text = self.text(piece.parts[1 if truth else 2])
         return text._replace(assumed=every((text.assumed, asked.assumed)))
 
-    def fill_method(self, piece: Piece) -> Text:
+    def fill_method(self, piece: ValuePart) -> LaunchText:
         texts = [self.text(part) for part in piece.parts]
         both = together(texts)
         if both.value is None:
@@ -301,7 +301,7 @@ class Filling:
             return unknown(show((piece,)), str(error))
         return known(flag(result) if isinstance(result, bool) else str(result), both.assumed)
 
-    def fill_rewritten(self, piece: Piece) -> Text:
+    def fill_rewritten(self, piece: ValuePart) -> LaunchText:
         """A changed parameter file: its name stands for it until it is read."""
         texts = [self.text(part) for part in piece.parts]
         is_text = piece.kind == "replaced"
@@ -314,7 +314,7 @@ class Filling:
 
     fill_replaced = fill_rewritten
 
-    def fill_has_node(self, piece: Piece) -> Text:
+    def fill_has_node(self, piece: ValuePart) -> LaunchText:
         file, node = (self.text(part) for part in piece.parts[:2])
         both = together((file, node))
         entries = self.entries(file.value, 0) if both.value is not None and file.value is not None else None
@@ -322,21 +322,21 @@ class Filling:
             return unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
         return known(flag(any(node.value in entry.path[:-1] for entry in entries)), both.assumed)
 
-    def fill_eval(self, piece: Piece) -> Text:
+    def fill_eval(self, piece: ValuePart) -> LaunchText:
         expression = self.text(piece.parts[0])
         if expression.value is None:
             return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
         used: list[tuple[str, ...]] = [expression.assumed]
 
         def argument(name: str) -> Any:
-            text = self.fill_arg(Piece("arg", name))
+            text = self.fill_arg(ValuePart("arg", name))
             if text.value is None:
                 raise CannotTell(*text.reasons)
             used.append(text.assumed)
             return ros1_value(text.value)
 
         def variable(name: str, *default: str) -> str:
-            text = self.fill_env(Piece("env", name, tuple(literal(d) for d in default)))
+            text = self.fill_env(ValuePart("env", name, tuple(literal(d) for d in default)))
             if text.value is None:
                 raise CannotTell(*text.reasons)
             used.append(text.assumed)
@@ -363,7 +363,7 @@ class Filling:
 class _Arguments(dict):
     """The names that an expression of roslaunch sees: launch arguments, and a few constants."""
 
-    def __init__(self, arguments: Mapping[str, Text], look: Any):
+    def __init__(self, arguments: Mapping[str, LaunchText], look: Any):
         super().__init__(true=True, false=False, True_=True, pi=math.pi)
         self.arguments = arguments
         self.look = look
@@ -382,24 +382,24 @@ _PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewr
           "eval": 1}  # fmt: skip
 
 
-def _rewritten(entries: Sequence[Entry], rewrite: Rewrite) -> tuple[Entry, ...]:
+def _rewritten(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
     """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
     if rewrite.is_text:
         change = _change_of(rewrite.changes)
         return tuple(_replaced(entry, change) for entry in entries)
     changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
     root = (rewrite.root.value,) if rewrite.root.value else ()
-    made: list[Entry] = []
+    made: list[ParameterEntry] = []
     for entry in entries:
         new = changes.get(".".join(entry.path), changes.get(entry.path[-1] if entry.path else ""))
         value = entry.value
         if new is not None:
             value = scalar(new.value) if new.value else new.shown
-        made.append(Entry((*root, *entry.path), value, entry.line))
+        made.append(ParameterEntry((*root, *entry.path), value, entry.line))
     return tuple(made)
 
 
-def _change_of(changes: tuple[tuple[Text, Text], ...]) -> Callable[[str], str]:
+def _change_of(changes: tuple[tuple[LaunchText, LaunchText], ...]) -> Callable[[str], str]:
     """What makes these changes in a text. The same keys stand in most entries of a file."""
 
     @cache
@@ -412,7 +412,7 @@ def _change_of(changes: tuple[tuple[Text, Text], ...]) -> Callable[[str], str]:
     return change
 
 
-def _replaced(entry: Entry, change: Callable[[str], str]) -> Entry:
+def _replaced(entry: ParameterEntry, change: Callable[[str], str]) -> ParameterEntry:
     value = entry.value
     if isinstance(value, str):
         # The text is changed before it is read as YAML, so that what comes of it may be a number or a bool.
@@ -421,4 +421,4 @@ def _replaced(entry: Entry, change: Callable[[str], str]) -> Entry:
     elif isinstance(value, list):
         value = [change(item) if isinstance(item, str) else item for item in value]
     path = tuple(filter(None, map(change, entry.path)))
-    return Entry(path, value, entry.line)
+    return ParameterEntry(path, value, entry.line)

@@ -15,24 +15,24 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ....edges.dispatch import methods_of
-from ...facts.launch.actions import Action, Condition, LaunchFile, literal, plain
-from ...facts.launch.parameter_files import Entry
+from ...facts.launch.actions import Action, ActionCondition, LaunchFile, literal, plain
+from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
-from .fill import Filling, Scope
+from .fill import ActionScope, Filling
 from .result import (
-    Argument,
-    At,
+    LaunchArgument,
     Launched,
+    LaunchParameter,
+    LaunchSources,
     Remap,
-    Setting,
     SettingFile,
+    ShareLine,
     Skipped,
-    Sources,
     Started,
-    Unresolved,
+    UnresolvedPart,
 )
-from .text import Text, every, known, ros1_value, show, show_condition, truth_of, unknown, within, yaml_value
+from .text import LaunchText, every, known, ros1_value, show, show_condition, truth_of, unknown, within, yaml_value
 
 DEEPEST = 30
 MOST_ACTIONS = 20_000
@@ -41,7 +41,7 @@ MOST_ACTIONS = 20_000
 def follow(
     package: str,
     path: str,
-    sources: Sources,
+    sources: LaunchSources,
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
     generation: int = 0,
@@ -71,18 +71,23 @@ class _Launch(Filling):
     """One launch under way."""
 
     def __init__(
-        self, sources: Sources, arguments: dict[str, Text], environment: dict[str, Text], generation: int, most: int
+        self,
+        sources: LaunchSources,
+        arguments: dict[str, LaunchText],
+        environment: dict[str, LaunchText],
+        generation: int,
+        most: int,
     ):
-        super().__init__(sources, Scope(arguments, environment, 0), generation or 2)
-        self.chain: list[At] = []
+        super().__init__(sources, ActionScope(arguments, environment, 0), generation or 2)
+        self.chain: list[ShareLine] = []
         self.open: list[str] = []
         self.assumed: list[str] = []
         self.after: list[str] = []
         self.container = known("")
         self.most = self.budget = most
         self.started: list[Started] = []
-        self.server: dict[str, Setting] = {}
-        self.declared: list[Argument] = []
+        self.server: dict[str, LaunchParameter] = {}
+        self.declared: list[LaunchArgument] = []
         self.skipped: list[Skipped] = []
         self.files: list[tuple[str, str]] = []
 
@@ -90,7 +95,7 @@ class _Launch(Filling):
         self.package, self.path = package, path
         file = self.sources.launch(package, path)
         if file is None:
-            self.unresolved.append(Unresolved(At(package, path, 0), path, ("the launch file is not there",)))
+            self.unresolved.append(UnresolvedPart(ShareLine(package, path, 0), path, ("the launch file is not there",)))
             return
         try:
             self.file(file)
@@ -128,7 +133,9 @@ class _Launch(Filling):
             _DOING.get(action.kind.replace("-", "_"), _Launch.do_unknown)(self, action)
             del self.open[marks[0] :], self.assumed[marks[1] :], self.after[marks[2] :]
 
-    def decide(self, conditions: Sequence[Condition]) -> tuple[bool | None, list[str], tuple[str, ...], list[str]]:
+    def decide(
+        self, conditions: Sequence[ActionCondition]
+    ) -> tuple[bool | None, list[str], tuple[str, ...], list[str]]:
         """Whether conditions hold (None: not known), which are not known, the defaults they rest on, and events."""
         open_: list[str] = []
         after: list[str] = []
@@ -156,7 +163,7 @@ class _Launch(Filling):
         """Whether what is set here may not be set at all, as seen by what follows."""
         return len(self.open) > self.scope.open
 
-    def set(self, name: str, text: Text) -> None:
+    def set(self, name: str, text: LaunchText) -> None:
         """An argument's new value; one set under an undecided condition is not known afterwards."""
         if self.uncertain():
             before = self.scope.arguments.get(name)
@@ -187,7 +194,7 @@ class _Launch(Filling):
             else:
                 text = self.text(default)
                 self.set(name, text._replace(assumed=every((text.assumed, (name,)))))
-        self.declared.append(Argument(name, self.scope.arguments[name], self.at(action.line)))
+        self.declared.append(LaunchArgument(name, self.scope.arguments[name], self.at(action.line)))
 
     def do_let(self, action: Action) -> None:
         name = self.name_of(action)
@@ -207,14 +214,14 @@ class _Launch(Filling):
         outer, self.scope = self.scope, self.scope.inner(len(self.open))
         forwarding = action.get("forwarding")
         if forwarding is not None and truth_of(self.text(forwarding)) is False:
-            self.scope = Scope({}, {}, len(self.open))
+            self.scope = ActionScope({}, {}, len(self.open))
         if action.get("namespace") is not None:
             self.scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
         self.clear(action, self.scope.namespace)
         self.run(action.children)
         self.scope = outer
 
-    def inside(self, namespace: Text) -> Text:
+    def inside(self, namespace: LaunchText) -> LaunchText:
         """A namespace below the one that holds here, absolute."""
         base = self.scope.namespace
         if namespace.value == "":
@@ -269,7 +276,7 @@ class _Launch(Filling):
         scope, self.package, self.path = outer
         self.scope = scope
 
-    def passed(self, action: Action) -> Iterator[tuple[str, Text]]:
+    def passed(self, action: Action) -> Iterator[tuple[str, LaunchText]]:
         """The arguments given to an include, in order, each filled in when it is asked for."""
         for child in action.children:
             if child.kind == "unknown":
@@ -287,7 +294,7 @@ class _Launch(Filling):
                 text = unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
             yield name, text
 
-    def scope1(self, action: Action) -> Scope:
+    def scope1(self, action: Action) -> ActionScope:
         """The scope of a file that roslaunch includes: namespace and remappings are passed on, arguments only as
         given."""
         scope = self.scope.inner(len(self.open))
@@ -301,7 +308,7 @@ class _Launch(Filling):
         scope.constants = set(scope.arguments) if all_ is not None else set()
         return scope
 
-    def clear(self, action: Action, namespace: Text) -> None:
+    def clear(self, action: Action, namespace: LaunchText) -> None:
         clear = action.get("clear")
         if clear is not None and namespace.value and truth_of(self.text(clear)):
             self.forget(namespace.value)
@@ -338,7 +345,7 @@ class _Launch(Filling):
             return
         self.scope.settings.append(self.setting_file(action))
 
-    def setting(self, action: Action) -> Setting | None:
+    def setting(self, action: Action) -> LaunchParameter | None:
         """A parameter of a ROS 2 node."""
         name = self.name_of(action)
         if name is None:
@@ -348,7 +355,7 @@ class _Launch(Filling):
         value: Any = text.value
         if value is not None and type_ not in ("str", "string"):
             value = yaml_value(value)
-        return Setting(name, value, text, self.at(action.line), tuple(self.open[self.scope.open :]))
+        return LaunchParameter(name, value, text, self.at(action.line), tuple(self.open[self.scope.open :]))
 
     def setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
@@ -369,13 +376,13 @@ class _Launch(Filling):
         prefix = (self.text(name).shown,) if name is not None else ()
         if entries is not None:
             entries = tuple(
-                Entry((*prefix, *entry.path[len(below) :]), entry.value, entry.line)
+                ParameterEntry((*prefix, *entry.path[len(below) :]), entry.value, entry.line)
                 for entry in entries
                 if list(entry.path[: len(below)]) == below
             )
         return SettingFile(file, entries, at, conditions, True)
 
-    def serve(self, action: Action, namespace: Text) -> None:
+    def serve(self, action: Action, namespace: LaunchText) -> None:
         """Puts a <param> of ROS 1 on the server, below a namespace."""
         name = self.text(action.get("name") or literal(""))
         if name.value is not None and name.value[:1] == "~":
@@ -394,15 +401,15 @@ class _Launch(Filling):
             value = ros1_value(text.value.strip(), plain(action.get("type")) or "auto")
         self.put(full.value, value, text, action.line)
 
-    def put(self, name: str, value: Any, text: Text, line: int) -> None:
+    def put(self, name: str, value: Any, text: LaunchText, line: int) -> None:
         if self.open:
             before = self.server.get(name)
             if before is not None and before.text.value != text.value:
                 text, value = unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}"), None
         self.server.pop(name, None)
-        self.server[name] = Setting(name, value, text, self.at(line), tuple(self.open))
+        self.server[name] = LaunchParameter(name, value, text, self.at(line), tuple(self.open))
 
-    def serve_file(self, action: Action, namespace: Text) -> None:
+    def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
         below = self.text(action.get("name") or literal(""))
         base = namespace if namespace.value != "" else known("/")
@@ -442,7 +449,7 @@ class _Launch(Filling):
 
     do_lifecycle = do_test = do_container = do_node
 
-    def node2(self, action: Action, container: Text) -> None:
+    def node2(self, action: Action, container: LaunchText) -> None:
         package, executable, plugin = (self.field(action, key) for key in ("package", "executable", "plugin"))
         name = self.field(action, "name")
         namespace = self.field(action, "namespace")
@@ -475,7 +482,7 @@ class _Launch(Filling):
         if kind == "container":
             self.load(action, started.full_name)
 
-    def field(self, action: Action, key: str) -> Text:
+    def field(self, action: Action, key: str) -> LaunchText:
         return self.text(action.get(key) or literal(""))
 
     def begin(self, action: Action, kind: str, **fields: Any) -> Started:
@@ -500,13 +507,13 @@ class _Launch(Filling):
         return started
 
     def ros_arguments(
-        self, arguments: Sequence[Text], line: int
-    ) -> tuple[list[Remap], list[Setting | SettingFile], Text | None, Text | None]:
+        self, arguments: Sequence[LaunchText], line: int
+    ) -> tuple[list[Remap], list[LaunchParameter | SettingFile], LaunchText | None, LaunchText | None]:
         """Remappings, parameters, name and namespace that ROS 2 arguments on a command line give."""
         remaps: list[Remap] = []
-        settings: list[Setting | SettingFile] = []
-        name: Text | None = None
-        namespace: Text | None = None
+        settings: list[LaunchParameter | SettingFile] = []
+        name: LaunchText | None = None
+        namespace: LaunchText | None = None
         inside, option = False, ""
         for text in arguments:
             word = text.value
@@ -529,7 +536,7 @@ class _Launch(Filling):
                     else:
                         remaps.append(Remap(known(old), known(new, text.assumed), self.at(line)))
                 elif option in ("-p", "--param"):
-                    settings.append(Setting(old, yaml_value(new), known(new, text.assumed), self.at(line)))
+                    settings.append(LaunchParameter(old, yaml_value(new), known(new, text.assumed), self.at(line)))
                 elif option == "--params-file":
                     settings.append(SettingFile(text, self.entries(word, line), self.at(line)))
                 option = ""
@@ -538,7 +545,7 @@ class _Launch(Filling):
                 option = ""
         return remaps, settings, name, namespace
 
-    def load(self, action: Action, container: Text) -> None:
+    def load(self, action: Action, container: LaunchText) -> None:
         """Starts the composable nodes below an action."""
         outer, self.scope = self.scope, self.scope.inner(len(self.open))
         before, self.container = self.container, container
@@ -649,7 +656,7 @@ class _Launch(Filling):
             arguments=words,
         )
 
-    def split(self, text: Text) -> list[Text]:
+    def split(self, text: LaunchText) -> list[LaunchText]:
         """The words of one argument, which a substitution may have brought several of."""
         if text.value is None:
             return [text]

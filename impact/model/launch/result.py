@@ -8,12 +8,12 @@ from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
-from ...facts.launch.parameter_files import Entry, ParameterFile
+from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..flow.names import canonical, joined
-from .text import Text, known, within
+from .text import LaunchText, known, within
 
 
-class Sources(Protocol):
+class LaunchSources(Protocol):
     """Where launch and parameter files come from. package and path: as in `$(find package)/path`, the path normal and
     without a leading slash. None for what is not there."""
 
@@ -26,7 +26,7 @@ class Sources(Protocol):
         ...
 
 
-class At(NamedTuple):
+class ShareLine(NamedTuple):
     """A line of a file in a package's share folder."""
 
     package: str
@@ -37,20 +37,20 @@ class At(NamedTuple):
 class Remap(NamedTuple):
     """A remapping as given; in ROS 2 old may have a node's name before it (`node:old`). conditions: as in Started."""
 
-    old: Text
-    new: Text
-    at: At
+    old: LaunchText
+    new: LaunchText
+    at: ShareLine
     conditions: tuple[str, ...] = ()
 
 
-class Setting(NamedTuple):
+class LaunchParameter(NamedTuple):
     """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
     value: bool, int, float, str, None or list, if text.value is known. conditions: as in Started."""
 
     name: str
     value: Any
-    text: Text
-    at: At
+    text: LaunchText
+    at: ShareLine
     conditions: tuple[str, ...] = ()
 
 
@@ -58,9 +58,9 @@ class SettingFile(NamedTuple):
     """A parameter file given to a node of ROS 2. entries: None where it could not be had. plain: its entries are
     parameters by themselves, without the name of a node above them."""
 
-    file: Text
-    entries: tuple[Entry, ...] | None
-    at: At
+    file: LaunchText
+    entries: tuple[ParameterEntry, ...] | None
+    at: ShareLine
     conditions: tuple[str, ...] = ()
     plain: bool = False
 
@@ -80,29 +80,31 @@ class Started(NamedTuple):
 
     kind: str
     generation: int
-    package: Text
-    executable: Text
-    plugin: Text
-    container: Text
-    name: Text
-    namespace: Text
+    package: LaunchText
+    executable: LaunchText
+    plugin: LaunchText
+    container: LaunchText
+    name: LaunchText
+    namespace: LaunchText
     remaps: tuple[Remap, ...]
-    settings: tuple[Setting | SettingFile, ...]
-    arguments: tuple[Text, ...]
+    settings: tuple[LaunchParameter | SettingFile, ...]
+    arguments: tuple[LaunchText, ...]
     conditions: tuple[str, ...]
     assumed: tuple[str, ...]
     after: tuple[str, ...]
-    at: At
-    chain: tuple[At, ...]
+    at: ShareLine
+    chain: tuple[ShareLine, ...]
 
     @property
-    def full_name(self) -> Text:
+    def full_name(self) -> LaunchText:
         """Namespace and name together; unknown where either is, or where the name is left to the program."""
         if self.name.value == "":
-            return Text(None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",))
+            return LaunchText(
+                None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",)
+            )
         full = within(self.namespace if self.namespace.value != "" else known("/"), self.name)
         if full.value is not None and full.value[:1] != "/":
-            return Text(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
+            return LaunchText(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
         return full
 
 
@@ -111,25 +113,25 @@ class Skipped(NamedTuple):
     it is false whatever the arguments."""
 
     kind: str
-    at: At
+    at: ShareLine
     conditions: tuple[str, ...]
     assumed: tuple[str, ...]
 
 
-class Unresolved(NamedTuple):
+class UnresolvedPart(NamedTuple):
     """Something that could not be followed or filled in: what, and why."""
 
-    at: At
+    at: ShareLine
     what: str
     reasons: tuple[str, ...]
 
 
-class Argument(NamedTuple):
+class LaunchArgument(NamedTuple):
     """A launch argument as declared. value: what it has in this launch."""
 
     name: str
-    value: Text
-    at: At
+    value: LaunchText
+    at: ShareLine
 
 
 class Launched(NamedTuple):
@@ -137,14 +139,14 @@ class Launched(NamedTuple):
     files read. actions: how many were done."""
 
     started: tuple[Started, ...]
-    server: Mapping[str, Setting]
-    arguments: tuple[Argument, ...]
+    server: Mapping[str, LaunchParameter]
+    arguments: tuple[LaunchArgument, ...]
     skipped: tuple[Skipped, ...]
-    unresolved: tuple[Unresolved, ...]
+    unresolved: tuple[UnresolvedPart, ...]
     files: tuple[tuple[str, str], ...]
     actions: int = 0
 
-    def values(self, started: Started, name: str = "") -> dict[str, Setting]:
+    def values(self, started: Started, name: str = "") -> dict[str, LaunchParameter]:
         """The private parameters of a node. name: its full name where the launch leaves it to the program; without one
         only what holds for any node is given."""
         full = name or started.full_name.value or ""
@@ -153,24 +155,24 @@ class Launched(NamedTuple):
             return {
                 key[len(below) :]: setting for key, setting in self.server.items() if full and key.startswith(below)
             }
-        found: dict[str, Setting] = {}
+        found: dict[str, LaunchParameter] = {}
         for setting in started.settings:
-            if isinstance(setting, Setting):
+            if isinstance(setting, LaunchParameter):
                 found.pop(setting.name, None)
                 found[setting.name] = setting
                 continue
             for key, entry in file_values(setting, full).items():
                 found.pop(key, None)
                 shown = str(entry.value)
-                text = Text(shown, shown, (), setting.file.assumed)
-                found[key] = Setting(key, entry.value, text, setting.at, setting.conditions)
+                text = LaunchText(shown, shown, (), setting.file.assumed)
+                found[key] = LaunchParameter(key, entry.value, text, setting.at, setting.conditions)
         return found
 
 
-def file_values(setting: SettingFile, full_name: str) -> dict[str, Entry]:
+def file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntry]:
     """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
     node whose name is not known: then only what is for every node."""
-    found: dict[str, Entry] = {}
+    found: dict[str, ParameterEntry] = {}
     for entry in setting.entries or ():
         if setting.plain:
             found[".".join(entry.path)] = entry

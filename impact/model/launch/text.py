@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.launch.actions import Condition, Piece, Value
+from ...facts.launch.actions import ActionCondition, Value, ValuePart
 from ...facts.launch.parameter_files import extract as parameters
 from ...facts.launch.parameter_files import scalar
 from ...facts.python.text import ARITHMETIC, COMPARISONS
@@ -19,7 +19,7 @@ from ..flow.names import joined
 LONGEST = 100_000
 
 
-class Text(NamedTuple):
+class LaunchText(NamedTuple):
     """A text as far as it is known. value: None where it is not. shown: what is known of it, the rest as `<...>`.
     reasons: why it is not known. assumed: launch arguments, and `$VARIABLE`s of the environment, on whose defaults it
     rests."""
@@ -30,33 +30,33 @@ class Text(NamedTuple):
     assumed: tuple[str, ...] = ()
 
 
-def known(value: str, assumed: tuple[str, ...] = ()) -> Text:
+def known(value: str, assumed: tuple[str, ...] = ()) -> LaunchText:
     """A text that is known."""
-    return Text(value, value, (), assumed)
+    return LaunchText(value, value, (), assumed)
 
 
-def unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> Text:
+def unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> LaunchText:
     """A text that is not."""
-    return Text(None, f"<{shown}>", reasons, assumed)
+    return LaunchText(None, f"<{shown}>", reasons, assumed)
 
 
-def together(texts: Sequence[Text], between: str = "") -> Text:
+def together(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
     """Texts one after the other as one."""
     value = None if any(t.value is None for t in texts) else between.join(t.value or "" for t in texts)
     if value is not None and len(value) > LONGEST:
         return unknown("...", "is too long")
     shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
-    return Text(value, shown, every(t.reasons for t in texts), every(t.assumed for t in texts))
+    return LaunchText(value, shown, every(t.reasons for t in texts), every(t.assumed for t in texts))
 
 
-def within(namespace: Text, name: Text) -> Text:
+def within(namespace: LaunchText, name: LaunchText) -> LaunchText:
     """A name put into a namespace."""
     if name.value is not None and name.value[:1] == "/":
         return name
     if namespace.value is None or name.value is None:
         both = together((namespace, name), "/")
         return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return Text(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
+    return LaunchText(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
                 every((namespace.assumed, name.assumed)))  # fmt: skip
 
 
@@ -73,7 +73,7 @@ def show(value: Value) -> str:
     return "".join(_show_piece(piece) for piece in value)
 
 
-def _show_piece(piece: Piece) -> str:
+def _show_piece(piece: ValuePart) -> str:
     if piece.kind == "text":
         return piece.text
     if piece.kind == "other":
@@ -96,12 +96,12 @@ def _show_piece(piece: Piece) -> str:
     return f"$({' '.join([piece.kind, *([piece.text] if piece.text else []), *parts])})"
 
 
-def show_condition(condition: Condition) -> str:
+def show_condition(condition: ActionCondition) -> str:
     text = show(condition.value)
     return f"not ({text})" if condition.kind == "unless" else text
 
 
-def truth_of(text: Text) -> bool | None:
+def truth_of(text: LaunchText) -> bool | None:
     """What roslaunch and launch make of a text that is asked: True, False, or None for what they refuse."""
     if text.value is None:
         return None

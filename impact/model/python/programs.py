@@ -10,7 +10,7 @@ from ..cmake.build import At
 
 if TYPE_CHECKING:
     from ...facts.setup import SetupFile
-    from ..view import View
+    from ..view import TargetView
     from ..workspace import Package
 
 
@@ -55,7 +55,7 @@ class ScriptSetup:
             for command, text, line in file.script_folders
         }
 
-    def find_programs(self, view: View) -> dict[str, At]:
+    def find_programs(self, view: TargetView) -> dict[str, At]:
         """Programs that `ros2 run` and launch files are to find, by their names: all entry points where a folder is
         given, else those that something starts as a node or whose module is one. Those that data_files put into
         lib/<package> are left out."""
@@ -72,7 +72,7 @@ class ScriptSetup:
         return programs
 
 
-def list_started_programs(view: View, package: Package) -> dict[str, bool]:
+def list_started_programs(view: TargetView, package: Package) -> dict[str, bool]:
     """Programs of the package that the workspace starts with `ros2 run` or as nodes, and whether in any case."""
     found: dict[str, bool] = {}
     for other in view.everyone():

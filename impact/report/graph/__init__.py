@@ -18,8 +18,9 @@ FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
 
 
 def draw(
-    graph: Graph, format: str, base: Graph | None = None, *, nodes: Sequence[str] = (), topics: Sequence[str] = (),
-    packages: Sequence[str] = (), around: str = "", hops: int = 2, everything: bool = False, style: Style = WIDE,
+    graph: Graph, format: str, base: Graph | None = None, *, nodes: Sequence[str] = (),
+    topics: Sequence[str] = (), packages: Sequence[str] = (), around: str = "", hops: int = 2,
+    everything: bool = False, style: Style = WIDE,
 ) -> str:  # fmt: skip
     """A graph in one of FORMATS. base: what it is compared with: then what is new, gone and changed is marked.
 

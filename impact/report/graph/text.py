@@ -8,7 +8,7 @@ from ....edges.console import counted
 from ...model.flow.connections import Edge, conditions, edges, loops, names_of
 from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...model.flow.select import Selection
-from ..columns import UNBROKEN, Piece, laid_out
+from ..columns import UNBROKEN, LinePart, laid_out
 from ..style import PLAIN, Style
 
 _SHOWN = 20
@@ -36,7 +36,7 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
     alone = sorted({names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found})
     if alone:
         said = f"{counted(len(alone), 'node')} with none of these: {', '.join(alone)}"
-        lines += [*_line([Piece(said)], style, 0, 2), ""]
+        lines += [*_line([LinePart(said)], style, 0, 2), ""]
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
@@ -45,7 +45,7 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
     return "\n".join(lines) + "\n"
 
 
-def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
+def _line(pieces: Sequence[LinePart], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
     return laid_out(pieces, style, indent, hang)
 
 
@@ -58,14 +58,14 @@ def _head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Ite
     if hidden:
         are, them = ("is", "it") if hidden == 1 else ("are", "them")
         text += f" ({counted(hidden, 'name')} that most nodes have {are} hidden; --all shows {them})"
-    return _line([Piece(text)], style, 0)
+    return _line([LinePart(text)], style, 0)
 
 
 def _name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
     # No name begins a line: CI systems read what is there.
-    name = Piece(f"{group[0].kind} {group[0].name}", "bold")
-    yield from _line([name, Piece(" or ".join(types) if types else "type not known")], style, 0)
+    name = LinePart(f"{group[0].kind} {group[0].name}", "bold")
+    yield from _line([name, LinePart(" or ".join(types) if types else "type not known")], style, 0)
     for same in _alike(group):
         yield from _edge(same, names, style)
 
@@ -89,11 +89,11 @@ def _said(edge: Edge) -> tuple:
 def _edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     edge, mark = same[0], _ROLES[same[0].mark]
     who = ", ".join(dict.fromkeys(names.get(each.node, each.node) or "(no node)" for each in same))
-    line = [Piece(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), Piece(who, mark, hang=_NODES)]
+    line = [LinePart(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), LinePart(who, mark, hang=_NODES)]
     for endpoint in _distinct(edge.endpoints):
-        line.append(Piece("", path=f"{endpoint.path}:{endpoint.line}"))
+        line.append(LinePart("", path=f"{endpoint.path}:{endpoint.line}"))
         beside = _beside(endpoint, edge, style)
-        line += [Piece(beside, mark or "dim")] if beside else []
+        line += [LinePart(beside, mark or "dim")] if beside else []
         yield from _line(line, style, _HANG if line[0].path else 0)
         line = []
     if edge.before is not None:
@@ -109,7 +109,7 @@ def _differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
         old, now = said(before), said(edge)
         for sign, role, lines in (("-", "error", old - now), ("+", "good", now - old)):
             for line in sorted(lines):
-                yield from _line([Piece(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
+                yield from _line([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
     old, now = ({statement[1:]: statement for statement in _statements(each.publishes)} for each in (before, edge))
     for sign, role, lines in (("- ", "error", old.keys() - now.keys()), ("+ ", "good", now.keys() - old.keys())):
         for statement in sorted((old | now)[line] for line in lines):
@@ -121,10 +121,10 @@ def _differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
         was, is_now = (_ways(each.publishes, line) for each in (before, edge))
         for sign, role, ways in (("-", "error", was - is_now), ("+", "good", is_now - was)):
             for way in sorted(ways):
-                yield from _line([Piece(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
+                yield from _line([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
 
 
-def _ways(publishes: Sequence[Publish], line: tuple[Piece, ...]) -> set[str]:
+def _ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> set[str]:
     """Of the publish statements that are written as this line, the ways that lead there."""
     return {
         _when(way.guards, (way.trigger,)) or "always"
@@ -160,16 +160,16 @@ def _beside(endpoint: Endpoint, edge: Edge, style: Style) -> str:
     return f"[{'; '.join(said)}]" if said else ""
 
 
-def _statements(publishes: Sequence[Publish]) -> list[tuple[Piece, ...]]:
+def _statements(publishes: Sequence[Publish]) -> list[tuple[LinePart, ...]]:
     """Publish statements: where, when and on what. One that publishes to several publishers is said once."""
     return list(dict.fromkeys(map(_publish, publishes)))
 
 
-def _publish(publish: Publish) -> tuple[Piece, ...]:
-    place = Piece("publish at ", path=f"{publish.path}:{publish.line}")
+def _publish(publish: Publish) -> tuple[LinePart, ...]:
+    place = LinePart("publish at ", path=f"{publish.path}:{publish.line}")
     said = [_when(publish.guards, publish.triggers)] + [f"{publish.ways} ways lead there"] * (publish.ways > 1)
     text = "; ".join(filter(None, said))
-    return (place, Piece(text)) if text else (place,)
+    return (place, LinePart(text)) if text else (place,)
 
 
 def _when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
@@ -187,19 +187,19 @@ def coverage_lines(
     20 alone."""
     share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
     yield from _line(
-        [Piece(f"{coverage.resolved:,} of {counted(coverage.calls, 'API call')} resolved{share}; "
+        [LinePart(f"{coverage.resolved:,} of {counted(coverage.calls, 'API call')} resolved{share}; "
                f"{counted(coverage.files, 'file')} read")], style, 0, 2,
     )  # fmt: skip
     if coverage.unread:
         shown = coverage.unread if everything else coverage.unread[:5]
         rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
-        yield from _line([Piece(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
+        yield from _line([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""
-        pieces = [Piece("", path=f"{one.path}:{one.line}:"), Piece(f"{one.what}{written}: {one.reason}")]
+        pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"{one.what}{written}: {one.reason}")]
         yield from _line(pieces, style, 2, 4)
     more = len(coverage.unresolved) - len(shown)
     if more:
         said = f"and {more:,} more" if shown else f"{more:,} {'is' if more == 1 else 'are'} not resolved"
-        yield from _line([Piece(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)
+        yield from _line([LinePart(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)

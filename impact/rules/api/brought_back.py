@@ -6,11 +6,11 @@ from functools import cached_property
 from typing import Literal
 
 from ...model.package import is_header
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.changes import excuses
 from ...targets.providers.library import include_roots
-from ...targets.target import Change
+from ...targets.target import ChangeInForce
 
 _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
 
@@ -18,7 +18,7 @@ _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
 class Headers:
     """What the files of a package include."""
 
-    def __init__(self, view: View, package: Package):
+    def __init__(self, view: TargetView, package: Package):
         self._view, self._package = view, package
 
     @cached_property
@@ -32,7 +32,7 @@ class Headers:
             found.setdefault(include.at.path, set(shared)).add(include.path)
         return found
 
-    def bring_back(self, file: str, change: Change) -> Literal["yes", "maybe", "no"]:
+    def bring_back(self, file: str, change: ChangeInForce) -> Literal["yes", "maybe", "no"]:
         """Whether a file has a name in spite of a change, by what it includes."""
         paths = self._included.get(file, self._included[""])
         endings = excuses(change)
@@ -40,7 +40,7 @@ class Headers:
             return "yes"
         return "maybe" if any(self._may_bring(change, path) for path in paths) else "no"
 
-    def _brings(self, change: Change, endings: tuple[str, ...], path: str) -> bool:
+    def _brings(self, change: ChangeInForce, endings: tuple[str, ...], path: str) -> bool:
         """True for headers that bring the name back, and for those of other packages that include one of the library's
         that does, at whatever distance."""
         roots = include_roots(change.package)
@@ -48,7 +48,7 @@ class Headers:
             return path.endswith(endings)
         return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.brought(path).headers)
 
-    def _may_bring(self, change: Change, path: str) -> bool:
+    def _may_bring(self, change: ChangeInForce, path: str) -> bool:
         """True for headers of packages that depend on the changed library, and of nobody known."""
         view = self._view
         if path.startswith(include_roots(change.package) or "\0") or view.is_standard(path):

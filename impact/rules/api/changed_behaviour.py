@@ -26,9 +26,9 @@ Not reported
 from collections.abc import Iterator, Sequence
 
 from ...model.package import NameUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
-from ...targets.changes import Row, all_uses, behaves_differently
+from ...targets.changes import ChangeRow, all_uses, behaves_differently
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.evidence_record import Evidence
@@ -42,7 +42,7 @@ from .diagnosis import is_of_another_distro
     severity="note",
     texts=Text("`{subject}` behaves differently since {since}: {clause}", "[[{advice}]]"),
 )
-def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Diagnostic]]:
+def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView, Diagnostic]]:
     if not views:
         return
     table = all_uses("behaviour")
@@ -80,7 +80,7 @@ def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Diagnostic]
                 yield view, Diagnostic(use.at, shown, package.name, data, evidence=evidence)
 
 
-def _counts(view: View, package: Package, use: NameUse, row: Row) -> bool:
+def _counts(view: TargetView, package: Package, use: NameUse, row: ChangeRow) -> bool:
     """Whether a use is compiled or run on a target that has the package in some version."""
     if package.build_type.startswith("ament") and view.target.ros == 1:
         return False
@@ -93,7 +93,7 @@ def _counts(view: View, package: Package, use: NameUse, row: Row) -> bool:
     return view.concerned(package, row, use.at.path)
 
 
-def _before(view: View) -> DistroTarget | None:
+def _before(view: TargetView) -> DistroTarget | None:
     """The long-term distro before the target's."""
     known = known_distros()
     here = next((one.released for one in known if one.name == view.target.distro), "")

@@ -23,7 +23,7 @@ Not reported
 
 from functools import cache
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.surface.offers_cpp import defaults_changed
@@ -43,7 +43,7 @@ from .uses import list_cpp_uses
         help="give the argument where it matters",
     ),
 )
-def changed_default(view: View):
+def changed_default(view: TargetView):
     for package in view:
         for use in list_cpp_uses(view, package):
             found = use.found

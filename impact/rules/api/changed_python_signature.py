@@ -25,7 +25,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -50,14 +50,14 @@ _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
         ),
     },
 )
-def changed_python_signature(view: View):
+def changed_python_signature(view: TargetView):
     # What parameters are called now, where a reviewed table knows: by `function.parameter`.
     renamed = {change.old: change.new.rpartition(".")[2] for change in view.changes("python-api") if change.new}
     for package in view:
         yield from rate_upcoming(_list_changed(view, package, renamed))
 
 
-def _list_changed(view: View, package: Package, renamed: dict[str, str]) -> Iterator[Diagnostic | Upcoming]:
+def _list_changed(view: TargetView, package: Package, renamed: dict[str, str]) -> Iterator[Diagnostic | Upcoming]:
     for use in list_python_uses(view, package):
         found = use.found
         if found.form not in ("call", "override"):

@@ -34,12 +34,12 @@ from collections.abc import Iterator
 
 from ....edges.console import counted
 from ...model.standards import find_failing_standard
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.changes import function_of, shows_no_type, standards_of
 from ...targets.symbol import Horizon, Symbol
-from ...targets.target import Change
+from ...targets.target import ChangeInForce
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
 from ..text import Text
@@ -79,7 +79,7 @@ _REVIEWED = f"{UPSTREAM}[[ in {{standard}}]][[ ({{horizon}})]]"
         "reviewed early": Text(f"`{{subject}}` is not available in {_REVIEWED}[[ (added in {{since}})]]", "{advice}"),
     },
 )
-def changed_signature(view: View):
+def changed_signature(view: TargetView):
     seen = set()
     for found in _list_reviewed(view):
         seen.add((found.at.path, found.at.line))
@@ -98,9 +98,9 @@ def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
     return diagnose(use.found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)
 
 
-def _list_reviewed(view: View) -> Iterator[Diagnostic]:
+def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
     """What the tables of known changes tell. What the workspace itself brings is as it brings it."""
-    refused: dict[str, tuple[Change, Horizon | None]] = {
+    refused: dict[str, tuple[ChangeInForce, Horizon | None]] = {
         label: (change, ahead)
         for label, (change, ahead) in view.coming.items()
         if change.kind == "call-changed" and change.package not in _COMPILER
@@ -112,7 +112,7 @@ def _list_reviewed(view: View) -> Iterator[Diagnostic]:
 
 
 def _list_reviewed_of(
-    view: View, package: Package, refused: dict[str, tuple[Change, Horizon | None]]
+    view: TargetView, package: Package, refused: dict[str, tuple[ChangeInForce, Horizon | None]]
 ) -> Iterator[Diagnostic | Upcoming]:
     # A method that the package or what it is built with declares may be meant wherever its name is called.
     within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]

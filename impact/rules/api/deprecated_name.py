@@ -23,7 +23,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.availability import of_row
 from ...targets.symbol import Symbol
 from ..rule import Diagnostic, rule
@@ -34,11 +34,11 @@ from .uses import list_cpp_uses, list_python_uses
 
 
 @rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts())
-def deprecated_name(view: View):
+def deprecated_name(view: TargetView):
     yield from rate_upcoming(_list_deprecated(view))
 
 
-def _list_deprecated(view: View) -> Iterator[Diagnostic | Upcoming]:
+def _list_deprecated(view: TargetView) -> Iterator[Diagnostic | Upcoming]:
     seen = set()
     for package in view:
         uses = list_python_uses(view, package)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Cure, Diagnostic
+from ..rule import Diagnostic, FixAction
 from ..severity import Doubt
 from ..text import Text, Value
 from ..upcoming import Upcoming
@@ -51,7 +51,7 @@ def data_of(found: Availability) -> dict[str, Value]:
     }
 
 
-def find_missing(view: View, kind: str, name: str, packages: Iterable[str]) -> Availability | None:
+def find_missing(view: TargetView, kind: str, name: str, packages: Iterable[str]) -> Availability | None:
     """What is known of a thing that none of these packages has here, or will have; None for all else."""
     found = view.availability(Symbol(kind, name, tuple(packages)))
     return found if found.is_missing or found.state == "upcoming" else None
@@ -66,7 +66,7 @@ def diagnose(
     *,
     kind: str = "",
     data: dict[str, Value] | None = None,
-    fix: tuple[Cure, ...] = (),
+    fix: tuple[FixAction, ...] = (),
     changed: str = "",
     order: tuple = (),
 ) -> Diagnostic | Upcoming:
@@ -82,7 +82,7 @@ def diagnose(
     return Upcoming(diagnostic, changed or found.package, found.horizon, order or place)
 
 
-def is_of_another_distro(view: View, path: str, files: Collection[str]) -> bool:
+def is_of_another_distro(view: TargetView, path: str, files: Collection[str]) -> bool:
     """Whether a file is for other distros than the target: it, or one that stands for it there, lies in a folder that
     is called after a distro (`param/humble/burger.yaml`). files: of its package."""
     folder, _, name = path.rpartition("/")

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Availability, Symbol
-from ...targets.target import Change
-from ..rule import Cure
+from ...targets.target import ChangeInForce
+from ..rule import FixAction
 from ..severity import Doubt, doubts_of_place
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
@@ -26,7 +26,7 @@ class HeaderLoss(NamedTuple):
 
     found: Availability | None
     kind: str = ""
-    fix: tuple[Cure, ...] = ()
+    fix: tuple[FixAction, ...] = ()
     changed: str = ""
     ordered: bool = False
 
@@ -34,7 +34,7 @@ class HeaderLoss(NamedTuple):
 class IncludedHeaders:
     """Headers of others that a workspace includes, on one target."""
 
-    def __init__(self, view: View):
+    def __init__(self, view: TargetView):
         self._view = view
         kinds = ("header-removed", "header-renamed", "header-moved")
         self._gone = {c.old: c for c in view.changes(*kinds) if c.state == "removed" and c.old}
@@ -91,7 +91,7 @@ class IncludedHeaders:
             return HeaderLoss(None)  # something that comes along has contents that are not known
         return HeaderLoss(found, found.form)
 
-    def _find_row(self, path: str) -> Change | None:
+    def _find_row(self, path: str) -> ChangeInForce | None:
         """The reviewed row on a path that the target lacks."""
         view = self._view
         change = self._gone.get(path)
@@ -101,7 +101,7 @@ class IncludedHeaders:
         return change if change is not None and view.has_released_header(change.package, path) is False else None
 
 
-def included_headers(view: View) -> IncludedHeaders:
+def included_headers(view: TargetView) -> IncludedHeaders:
     """Those of a view, made once."""
     key = "included headers", ""
     if key not in view.worked_out:
@@ -113,7 +113,7 @@ def included_headers(view: View) -> IncludedHeaders:
 _SHORTEST = 8
 
 
-def find_misspelt(view: View, package: Package, path: str) -> str | None:
+def find_misspelt(view: TargetView, package: Package, path: str) -> str | None:
     """The header of the package that an include path misses by one letter; None where somebody has what it names."""
     if view.header(path) or len(path.rpartition("/")[2]) < _SHORTEST:
         return None
@@ -125,6 +125,6 @@ def find_misspelt(view: View, package: Package, path: str) -> str | None:
     return None
 
 
-def is_bridge(view: View, package: Package) -> bool:
+def is_bridge(view: TargetView, package: Package) -> bool:
     """Whether a package is built for both generations of ROS, and therefore includes headers of both."""
     return view.target.ros == 2 and any(include.path.startswith("ros/") for include in package.digest.includes)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from ...model.misspelling import Names, nearest
+from ...model.misspelling import SpellingIndex, nearest
 from ...model.package import IncludeUse, is_header
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package, snake
 from ...targets.surface.fields import default_fields
 from ...targets.symbol import Availability
@@ -44,7 +44,7 @@ class Fault(NamedTuple):
     found: Availability | None = None
 
 
-def find_interface_fault(view: View, path: str) -> Fault | None:
+def find_interface_fault(view: TargetView, path: str) -> Fault | None:
     """What is wrong with the path of a generated header on this target; None when nothing is known to be."""
     head, _, rest = path.partition("/")
     if not rest:
@@ -72,7 +72,7 @@ def find_interface_fault(view: View, path: str) -> Fault | None:
     return fault
 
 
-def _respell(view: View, head: str, rest: str) -> Fault | None:
+def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
     """A spelling of the other generation, or in another case."""
     if not _generates_interfaces(view, head):
         return None
@@ -89,7 +89,7 @@ def _respell(view: View, head: str, rest: str) -> Fault | None:
     return None
 
 
-def _generates_interfaces(view: View, name: str) -> bool:
+def _generates_interfaces(view: TargetView, name: str) -> bool:
     """True for packages that make headers from messages, services or actions, as far as their name tells it."""
     package = view.workspace.packages.get(name)
     if package is not None:
@@ -97,14 +97,14 @@ def _generates_interfaces(view: View, name: str) -> bool:
     return name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")) and view.target.version(name) is not None
 
 
-def _find_moved(view: View, head: str, rest: str) -> Fault | None:
+def _find_moved(view: TargetView, head: str, rest: str) -> Fault | None:
     """A header of a package of the workspace whose interface another one there defines."""
     workspace = view.workspace
     makers = [n for n in workspace.interface_names if n != head and workspace.is_interface_header(n, rest)]
     return Fault("moved", {"upstream": head, "replacement": f"{makers[0]}/{rest}"}) if len(makers) == 1 else None
 
 
-def _find_never_generated(view: View, path: str) -> Fault | None:
+def _find_never_generated(view: TargetView, path: str) -> Fault | None:
     """A path that looks like that of a generated header, where no version of the package that was read has such an
     interface, all of them were read up to the target's, and the release has no such file."""
     head, _, rest = path.partition("/")
@@ -117,11 +117,11 @@ def _find_never_generated(view: View, path: str) -> Fault | None:
     if view.providers.header_history(head, path) or view.has_released_header(head, path) is not False:
         return None
     stem, _, ending = rest.rpartition(".")
-    close = nearest(stem, Names(s for s in history.by_header if ("/" in s) == ("/" in rest)))
+    close = nearest(stem, SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)))
     return Fault("never generated", {"upstream": head, "replacement": f"{head}/{close}.{ending}" if close else ""})
 
 
-def doubts_of_c_header(view: View, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
+def doubts_of_c_header(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a file includes a header of C; None where the file may be about C."""
     beside = {i.path for i in package.digest.includes if i.at.path == include.at.path} - {include.path}
     if include.role == "aside" or include.path + "pp" in beside:

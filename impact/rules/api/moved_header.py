@@ -21,7 +21,7 @@ Not reported
 """
 
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.evidence import of_offered
@@ -33,7 +33,7 @@ from .diagnosis import availability_texts, data_of
 
 
 @rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts("include"))
-def moved_header(view: View):
+def moved_header(view: TargetView):
     moved = {
         c.old: (of_row(Symbol("header", c.old), c), c.kind != "header-removed")
         for c in view.changes("header-removed", "header-renamed", "header-moved")
@@ -55,7 +55,7 @@ def moved_header(view: View):
             )
 
 
-def _find_deprecated(view: View, path: str) -> Availability | None:
+def _find_deprecated(view: TargetView, path: str) -> Availability | None:
     """A header that warns in the target's version of who provides it, by the stored surfaces."""
     owners = [p.name for p in view.header(path) if p.kind == "ros" and p.name not in view.workspace.packages]
     found = view.offers.find("header", path, owners)
@@ -65,7 +65,7 @@ def _find_deprecated(view: View, path: str) -> Availability | None:
                         replacement=found.instead, evidence=of_offered(found))  # fmt: skip
 
 
-def respell(view: View, package: Package, include: IncludeUse, path: str) -> tuple[Replace, ...]:
+def respell(view: TargetView, package: Package, include: IncludeUse, path: str) -> tuple[Replace, ...]:
     """The fix that includes a header by its new path: where the target has it there, and the package has who provides
     it."""
     at = include.at

@@ -26,7 +26,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -47,7 +47,7 @@ class ParameterHeaders:
 
     Source: generate_parameter_library's CMake at the tags."""
 
-    def __init__(self, view: View):
+    def __init__(self, view: TargetView):
         version = view.target.version("generate_parameter_library")
         own = "generate_parameter_library" in view.workspace.packages
         self.version = "" if own else version or ""
@@ -88,7 +88,7 @@ class ParameterHeaders:
         ),
     },
 )
-def parameter_header(view: View):
+def parameter_header(view: TargetView):
     headers = ParameterHeaders(view)
     for package in view:
         for include in package.digest.includes:

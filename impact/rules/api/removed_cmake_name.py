@@ -26,7 +26,7 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
 from ..rule import Diagnostic, rule
@@ -38,7 +38,7 @@ Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
 @rule(scope="target", severity="error", texts=availability_texts())
-def removed_cmake_name(view: View):
+def removed_cmake_name(view: TargetView):
     gone = {c.old: c.package for c in view.changes("cmake-removed", "cmake-renamed") if c.state == "removed"}
     for package in view:
         names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
@@ -52,7 +52,7 @@ def removed_cmake_name(view: View):
 
 
 def _list_reviewed(
-    view: View, package: Package, names: Names, gone: dict[str, str]
+    view: TargetView, package: Package, names: Names, gone: dict[str, str]
 ) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell, unless what is stored of the very release contradicts it."""
     folded = {name.lower(): owner for name, owner in gone.items()}
@@ -68,7 +68,7 @@ def _list_reviewed(
             yield diagnose(found._replace(sure=True), at, name, package.name, doubts)
 
 
-def _list_unexported(view: View, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
+def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
     """What the stored versions of the packages that are found do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
     own = {target.name for one in view.workspace for target in one.build.targets}

@@ -28,7 +28,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
@@ -46,12 +46,12 @@ from .diagnosis import UPSTREAM, availability_texts, diagnose, find_missing, is_
         "argument early": Text(f"`{{file}}` of {UPSTREAM} has no argument `{{name}}`[[ (added in {{since}})]]"),
     },
 )
-def removed_executable(view: View):
+def removed_executable(view: TargetView):
     for package in view:
         yield from rate_upcoming(_of_package(view, package))
 
 
-def _of_package(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def _of_package(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         reference = use.reference
@@ -66,7 +66,7 @@ def _of_package(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]
                 yield from _arguments(view, package.name, use, path)
 
 
-def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
+def _lost(view: TargetView, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
     found = find_missing(view, side, name, (use.reference.package,))
     if found is not None:
         doubts = [*doubts_of_place(view, use.role), view.target.ros == 2 or Doubt.LATE]
@@ -77,7 +77,7 @@ def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> 
         yield diagnose(found, use.at, name, package, doubts)
 
 
-def _launch_file(view: View, package: str, name: str) -> str:
+def _launch_file(view: TargetView, package: str, name: str) -> str:
     """The launch file that is meant; on a command line it is told without its folder."""
     offer = view.offers.package(package) if "/" not in name else None
     if offer is None or any(posixpath.basename(launch.path) == name for launch in offer.build.launches):
@@ -85,7 +85,7 @@ def _launch_file(view: View, package: str, name: str) -> str:
     return next((one.name for one in offer.every("launch file") if posixpath.basename(one.name) == name), name)
 
 
-def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterator[Diagnostic]:
+def _arguments(view: TargetView, package: str, use: ReferenceUse, path: str) -> Iterator[Diagnostic]:
     """Arguments given to an included launch file that no launch file of the target's version declares."""
     reference = use.reference
     for name in reference.arguments or ():

@@ -31,7 +31,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.package import is_header
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -51,12 +51,12 @@ from .interface_headers import find_interface_fault
         "nested": Text("`{subject}` is not installed by {upstream} {version}", "[[include `{replacement}`]]"),
     },
 )
-def removed_header(view: View):
+def removed_header(view: TargetView):
     for package in view:
         yield from rate_upcoming(_list_removed(view, package))
 
 
-def _list_removed(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def _list_removed(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at

@@ -22,7 +22,7 @@ Not reported
     does not hold on the target.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
 from ..text import Text
@@ -37,11 +37,11 @@ TEXTS = {
 
 
 @rule(scope="target", severity="error", texts=TEXTS)
-def removed_package(view: View):
+def removed_package(view: TargetView):
     yield from list_gone_packages(view, "package-removed")
 
 
-def list_gone_packages(view: View, kind: str):
+def list_gone_packages(view: TargetView, kind: str):
     """Diagnostics for every use of a package whose change of the given kind is in force."""
     gone = {c.old or c.package: c.new for c in view.changes(kind) if c.state == "removed"}
     for package in view:

@@ -24,7 +24,7 @@ Not reported
 """
 
 from ...model.undeclared_parameters import UndeclaredParameter, list_undeclared_parameters
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.evidence import of_offered
 from ..rule import Diagnostic, rule
@@ -54,7 +54,7 @@ _HELP = "[[set `{replacement}`]]"
         ),
     },
 )
-def removed_parameter(view: View):
+def removed_parameter(view: TargetView):
     for package in view:
         files = frozenset(package.digest.files)
         # What a reviewed row about a value says at the same place says more.

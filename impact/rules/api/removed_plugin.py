@@ -27,7 +27,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
@@ -36,13 +36,13 @@ from .diagnosis import availability_texts, diagnose, find_missing, is_of_another
 
 
 @rule(scope="target", severity="error", texts=availability_texts())
-def removed_plugin(view: View):
+def removed_plugin(view: TargetView):
     own = {plugin.name or plugin.type for package in view.workspace for _, plugin in package.digest.plugins}
     for package in view:
         yield from rate_upcoming(_of_package(view, package, own))
 
 
-def _of_package(view: View, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
+def _of_package(view: TargetView, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         name = use.reference.name
@@ -59,14 +59,14 @@ def _of_package(view: View, package: Package, own: set[str]) -> Iterator[Diagnos
         yield diagnose(found, use.at, name, package.name, doubts)
 
 
-def _packages(view: View, package: Package, use: ReferenceUse) -> list[str]:
+def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
     head = re.split(r"/|::", use.reference.name)[0]
     named = [name for name in (use.reference.package, head) if name and view.is_package(name)]
     return named or sorted(view.closure(package))
 
 
-def _respelt(view: View, package: str, name: str) -> str:
+def _respelt(view: TargetView, package: str, name: str) -> str:
     """The same class as the target's version calls it."""
     offer = view.offers.package(package)
     known = {plugin.name for plugin in offer.build.plugins} if offer is not None else set()

@@ -28,7 +28,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import SEVERITIES, Diagnostic, rule
 from ..severity import Doubt, severity
@@ -38,12 +38,12 @@ from .uses import UnservedUse, list_python_uses
 
 
 @rule(scope="target", severity="error", texts=availability_texts())
-def removed_python_name(view: View):
+def removed_python_name(view: TargetView):
     for package in view:
         yield from rate_upcoming(_list_removed(view, package))
 
 
-def _list_removed(view: View, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def _list_removed(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
     # Of each name the worst place in a file: what follows a failed import is not reached.
     worst: dict[tuple[str, str, bool], UnservedUse] = {}
     for use in list_python_uses(view, package):

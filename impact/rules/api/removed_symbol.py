@@ -33,13 +33,13 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.package import NameUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.changes import excuses, removed_in
 from ...targets.providers.stdlib import stood_in_for
 from ...targets.symbol import Symbol
-from ...targets.target import Change
+from ...targets.target import ChangeInForce
 from ...targets.version import parts
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place
@@ -62,7 +62,7 @@ _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)
         "changed": Text(f"`{{subject}}` has changed in {UPSTREAM}", "[[use `{replacement}`]]"),
     },
 )
-def removed_symbol(view: View):
+def removed_symbol(view: TargetView):
     rows = ReviewedNames(view)
     seen = set()
     for package in view:
@@ -78,7 +78,7 @@ def removed_symbol(view: View):
         )
 
 
-def _list_reviewed(view: View, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
+def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell."""
     headers = Headers(view, package)
     for use in package.digest.names:
@@ -117,7 +117,9 @@ def _list_reviewed(view: View, package: Package, rows: ReviewedNames) -> Iterato
         yield diagnose(found if ahead is None else found.on(ahead), use.at, use.text, package.name, doubts, order=order)
 
 
-def _list_doubts(view: View, package: Package, use: NameUse, change: Change, rows: ReviewedNames) -> list[Doubt]:
+def _list_doubts(
+    view: TargetView, package: Package, use: NameUse, change: ChangeInForce, rows: ReviewedNames
+) -> list[Doubt]:
     role = "run" if use.language == "python" and _is_run(package, use) else use.role
     doubts = [*doubts_of_place(view, role, use.conditions)]
     if use.text in rows.own:

@@ -22,11 +22,11 @@ Not reported
     does not hold on the target.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import rule
 from .removed_package import TEXTS, list_gone_packages
 
 
 @rule(scope="target", severity="error", texts=TEXTS)
-def renamed_package(view: View):
+def renamed_package(view: TargetView):
     yield from list_gone_packages(view, "package-renamed")

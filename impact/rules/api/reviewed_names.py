@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ...model.package import NameUse, is_header
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.symbol import Symbol
-from ...targets.target import Change
+from ...targets.target import ChangeInForce
 
 _CPP_KINDS = ("api-removed", "api-renamed", "api-changed")
 _PYTHON_KINDS = ("python-removed", "python-api")
@@ -20,7 +20,7 @@ _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 class ReviewedNames:
     """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
 
-    def __init__(self, view: View):
+    def __init__(self, view: TargetView):
         self._by_name = view.target.changes().by_name
         self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
@@ -32,7 +32,7 @@ class ReviewedNames:
         }
         self.own.update(name for package in view.workspace for name in package.digest.defined)
 
-    def find(self, use: NameUse) -> list[Change]:
+    def find(self, use: NameUse) -> list[ChangeInForce]:
         """The rows on a name that is gone."""
         kinds = _PYTHON_KINDS if use.language == "python" else _CPP_KINDS
         found = self._list(kinds, use.text, "removed")
@@ -40,17 +40,17 @@ class ReviewedNames:
             found = self._list(kinds, use.text.rsplit("::", 1)[-1], "removed")
         return found
 
-    def find_early(self, name: str) -> list[Change]:
+    def find_early(self, name: str) -> list[ChangeInForce]:
         """The rows on a name that is not there yet."""
         return self._list(KINDS_OF_NAMES, name, "absent")
 
-    def _list(self, kinds: Iterable[str], name: str, state: str) -> list[Change]:
+    def _list(self, kinds: Iterable[str], name: str, state: str) -> list[ChangeInForce]:
         # What the workspace itself brings is as it brings it, whatever a release did.
         rows = (row for kind in kinds for row in self._by_name.get((kind, name), ()))
         return [row for row in rows if row.state == state and row.package not in self._packages]
 
 
-def is_contradicted(view: View, symbol: Symbol, change: Change) -> bool:
+def is_contradicted(view: TargetView, symbol: Symbol, change: ChangeInForce) -> bool:
     """Whether what is stored of the very release contradicts a reviewed row."""
     if change.library or change.kind == "api-changed":
         return False

@@ -30,7 +30,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.package import MemberUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
 from ..rule import Diagnostic, rule
@@ -55,7 +55,7 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
         ),
     },
 )
-def unknown_field(view: View):
+def unknown_field(view: TargetView):
     own = {
         member.name
         for package in view.workspace
@@ -74,7 +74,9 @@ def unknown_field(view: View):
         yield from rate_upcoming(_list_imports(view, package, named))
 
 
-def _list_members(view: View, package: Package, own: set[str], named: set[str]) -> Iterator[Diagnostic | Upcoming]:
+def _list_members(
+    view: TargetView, package: Package, own: set[str], named: set[str]
+) -> Iterator[Diagnostic | Upcoming]:
     for use in package.digest.members:
         if (not use.sure and use.member in own) or not named.isdisjoint(_list_spellings(use)):
             continue
@@ -92,7 +94,7 @@ def _list_members(view: View, package: Package, own: set[str], named: set[str]) 
             yield diagnose(found, use.at, use.member, package.name, doubts, kind=kind, data=data, changed=name)
 
 
-def _list_imports(view: View, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:
+def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:
     """Interfaces that Python imports."""
     for imported in package.digest.imports:
         head, _, kind = imported.module.partition(".")

@@ -28,7 +28,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -46,12 +46,12 @@ from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
         "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
     },
 )
-def unknown_header(view: View):
+def unknown_header(view: TargetView):
     for package in view:
         yield from _list_unknown(view, package)
 
 
-def _list_unknown(view: View, package: Package) -> Iterator[Diagnostic]:
+def _list_unknown(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
@@ -72,7 +72,7 @@ def _list_unknown(view: View, package: Package) -> Iterator[Diagnostic]:
             yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts)
 
 
-def _doubts_of_misspelt(view: View, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+def _doubts_of_misspelt(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
     """Nobody can compile an installed header with it, nor the package itself where it does."""
     if include.role == "aside" or not (include.targets or include.public):
         return (Doubt.UNCOMPILED,)

@@ -9,7 +9,7 @@ from ...facts.condition import Condition
 from ...model.cmake.build import At
 from ...model.package import CppApiUse, PythonApiUse
 from ...model.python.api import packages_of
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.changes import function_of
 from ...targets.surface.offers import Offers
@@ -32,19 +32,19 @@ class UnservedUse(NamedTuple):
     sure: bool = True
 
 
-def list_cpp_uses(view: View, package: Package) -> list[UnservedUse]:
+def list_cpp_uses(view: TargetView, package: Package) -> list[UnservedUse]:
     """Those of C++, in the order of the digest. What the target does not compile, and what reviewed tables speak of is
     left out. What an update of the distro breaks is upcoming."""
     return _worked_out(view, package, "C++ uses", _list_cpp)
 
 
-def list_python_uses(view: View, package: Package) -> list[UnservedUse]:
+def list_python_uses(view: TargetView, package: Package) -> list[UnservedUse]:
     """The same of Python; what the workspace provides is left out."""
     return _worked_out(view, package, "Python uses", _list_python)
 
 
 def _worked_out(
-    view: View, package: Package, key: str, make: Callable[[View, Package], Iterator[UnservedUse]]
+    view: TargetView, package: Package, key: str, make: Callable[[TargetView, Package], Iterator[UnservedUse]]
 ) -> list[UnservedUse]:
     if (key, package.name) not in view.worked_out:
         view.worked_out[key, package.name] = list(make(view, package))
@@ -55,7 +55,9 @@ Ask = Callable[[Offers, PythonOffers], Availability | None]
 _FORMS = frozenset(("arguments", "types", "override", "call"))
 
 
-def _answers(view: View, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]) -> Iterator[Availability]:
+def _answers(
+    view: TargetView, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]
+) -> Iterator[Availability]:
     """What the target makes of a use, and the first update of it that breaks the use if that works so far."""
     found = ask(view.offers, view.python_offers)
     if found is not None:
@@ -76,7 +78,7 @@ def _answers(view: View, ask: Ask, owners: Iterable[str], conditions: tuple[Cond
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
 
-def _list_cpp(view: View, package: Package) -> Iterator[UnservedUse]:
+def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     if not package.digest.cpp_api:
         return
     reviewed = {change.old for change in view.changes(*_REVIEWED)}
@@ -102,7 +104,7 @@ def _list_cpp(view: View, package: Package) -> Iterator[UnservedUse]:
             yield UnservedUse(use.at, use.name, found, _doubts_of_cpp(view, use, found), use.arguments, sure=use.sure)
 
 
-def _doubts_of_cpp(view: View, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
+def _doubts_of_cpp(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
     doubts = doubts_of_place(view, use.role, use.conditions)
     if not use.sure or any(package in view.workspace.packages for package in use.through):
         doubts = (*doubts, Doubt.INCOMPLETE)
@@ -111,7 +113,7 @@ def _doubts_of_cpp(view: View, use: CppApiUse, found: Availability) -> tuple[Dou
     return doubts
 
 
-def _list_python(view: View, package: Package) -> Iterator[UnservedUse]:
+def _list_python(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     if not package.digest.python_api:
         return
     reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
@@ -131,7 +133,7 @@ def _list_python(view: View, package: Package) -> Iterator[UnservedUse]:
             yield UnservedUse(one.at, found.symbol.name, found, doubts, keywords=keywords)
 
 
-def _doubts_of_python(view: View, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
+def _doubts_of_python(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
     doubts = doubts_of_place(view, one.role)
     if one.role == "test":
         doubts = (*doubts, Doubt.TEST)  # nobody waits for it, whatever the build makes of it

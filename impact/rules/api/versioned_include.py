@@ -20,7 +20,7 @@ Not reported
     Headers of the workspace itself; includes under a condition that excludes the target.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import versioned_folder
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, Together, doubts_of_place
@@ -38,7 +38,7 @@ _INCLUDE = "[[include `{replacement}`]]"
         "other": Text("`{subject}` is not available with {upstream} {version}", _INCLUDE),
     },
 )
-def versioned_include(view: View):
+def versioned_include(view: TargetView):
     for package in view:
         for include in package.digest.includes:
             path = include.path

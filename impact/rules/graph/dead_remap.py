@@ -26,7 +26,7 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.launches import Renamed, Start
+from ...model.flow.launches import GivenRemapping, LaunchedNode
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -61,7 +61,7 @@ def dead_remap(workspace: Workspace):
         yield Diagnostic(At(path, line), written, _package(workspace, path), data)
 
 
-def _may_apply(start: Start, renamed: Renamed, ros: int) -> bool:
+def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:
     """Whether a remapping may change a name of a node."""
     if start.hidden or renamed.old in _COMMON:
         return True

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol, TypeVar
 
-from ...model.flow.launches import Start
+from ...model.flow.launches import LaunchedNode
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 
 
-class Setting(Protocol):
+class LaunchLine(Protocol):
     """A remapping or parameter at a line of a file."""
 
     @property
@@ -20,18 +20,18 @@ class Setting(Protocol):
     def line(self) -> int: ...
 
 
-T = TypeVar("T", bound=Setting)
+T = TypeVar("T", bound=LaunchLine)
 
 
 def group_by_line(
-    workspace: Workspace, of: Callable[[Start], Iterable[T]], name: Callable[[T], str]
-) -> Iterator[tuple[tuple[str, int, str], list[tuple[Start, T]]]]:
+    workspace: Workspace, of: Callable[[LaunchedNode], Iterable[T]], name: Callable[[T], str]
+) -> Iterator[tuple[tuple[str, int, str], list[tuple[LaunchedNode, T]]]]:
     """(path, line, name) of each setting, with all starts that it applies to, in the order of the launch files.
 
     of: the settings of a start. name: the name of a setting. Lines that also apply to a program outside of the
     workspace are left out.
     """
-    found: dict[tuple[str, int, str], list[tuple[Start, T]]] = {}
+    found: dict[tuple[str, int, str], list[tuple[LaunchedNode, T]]] = {}
     elsewhere = {place for launch in flow_of(workspace).launches for place in launch.elsewhere}
     for launch in flow_of(workspace).launches:
         for start in launch.starts:

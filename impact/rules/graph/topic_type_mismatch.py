@@ -23,7 +23,7 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Pair, display_name, met, uncompared
+from ...model.flow.edges import FlowPair, display_name, met, uncompared
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -66,7 +66,7 @@ def topic_type_mismatch(workspace: Workspace):
             yield Diagnostic(at, taker.topic, pair.taker.node.package, data, kind="mismatch", doubts=doubts)
 
 
-def _may_have_another_type(pair: Pair) -> bool:
+def _may_have_another_type(pair: FlowPair) -> bool:
     """Whether a side has several types for the name, of which one may fit."""
     giver, taker = (pair.flow.of_node(side.endpoint) for side in (pair.giver, pair.taker))
     if {one.type for one in giver} & {one.type for one in taker}:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from ...model.flow.launches import Start
+from ...model.flow.launches import LaunchedNode
 from ...model.flow.misspelling import is_slip_of_name
 from ...model.workspace import Workspace
 from .launch_settings import group_by_line
@@ -41,7 +41,7 @@ def find_unasked(workspace: Workspace) -> Iterator[Unasked]:
         yield Unasked(path, line, name, start.package, start.program.partition("/")[2], similar)
 
 
-def _asks(start: Start, name: str) -> bool:
+def _asks(start: LaunchedNode, name: str) -> bool:
     """Whether a node may ask for a parameter."""
     parts = name.replace("/", ".").split(".")
     if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:

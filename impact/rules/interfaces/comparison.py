@@ -18,7 +18,7 @@ from ..text import Value
 UNMATCHED = "its {hash} changes, so older nodes and bags no longer match; used by {users:nothing in the workspace}"
 
 
-class Pair(NamedTuple):
+class SectionPair(NamedTuple):
     """One section of a definition before and after the change. name: `package/Name`, plus the section where several."""
 
     package: Package
@@ -32,7 +32,7 @@ class Pair(NamedTuple):
         return At(self.file.path, line, column)
 
 
-def pairs(workspace: Workspace, base: Workspace) -> Iterator[Pair]:
+def pairs(workspace: Workspace, base: Workspace) -> Iterator[SectionPair]:
     """Sections of definitions that are in both workspaces and differ."""
     for package in workspace:
         before = base.packages.get(package.name)
@@ -49,7 +49,7 @@ def pairs(workspace: Workspace, base: Workspace) -> Iterator[Pair]:
                     label = f"{package.name}/{file.name}" + (
                         f" ({section.name})" if len(file.definition.sections) > 1 else ""
                     )
-                    yield Pair(package, label, sections[section.name], section, file)
+                    yield SectionPair(package, label, sections[section.name], section, file)
 
 
 def type_of(field: Field) -> str:
@@ -83,7 +83,7 @@ def users_of(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
 
 
 def diagnostic(
-    workspace: Workspace, pair: Pair, at: At, subject: str, kind: str = "", **data: Value
+    workspace: Workspace, pair: SectionPair, at: At, subject: str, kind: str = "", **data: Value
 ) -> Diagnostic:
     """A diagnostic about one name of a definition. Where nothing in the workspace uses the definition, a change of it
     can only break others. Beside the data given it has `definition`, `users`, and `hash`: what nodes compare when they

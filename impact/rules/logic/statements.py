@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ...logic.changes import Change
+from ...logic.changes import LogicChange
 from ...logic.two_states import publishing
 from ...model.cmake.build import At
 from ...model.flow.edges import display_name
@@ -21,7 +21,7 @@ CONDITIONS = "its condition was {old:no condition} and is {new:no condition}"
 READERS = "read by {readers:nothing in the workspace}"
 
 
-def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[Change], bool]) -> Iterator[Diagnostic]:
+def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[LogicChange], bool]) -> Iterator[Diagnostic]:
     """A diagnostic for each publish statement whose change fits, at its place now. Its data: `change` (what changed, in
     a clause), `old` and `new` (conditions), `readers`. Without a reader in the workspace nothing there depends on it.
     """
@@ -34,7 +34,7 @@ def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[Change],
         yield Diagnostic(At(change.path, change.line), change.topic, change.package, data, doubts=doubts)
 
 
-def readers_of(graph: Graph, change: Change) -> list[Endpoint]:
+def readers_of(graph: Graph, change: LogicChange) -> list[Endpoint]:
     """The subscribers that a change reaches, one for each node and place."""
     place = (change.path, change.line)
     topics = {one.topic for one in graph.publishes if (one.path, one.line) == place and one.topic} | {*change.topics}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ...model.cmake.build import Exported
-from ...model.view import View
+from ...model.cmake.build import CMakeExport
+from ...model.view import TargetView
 from ...model.workspace import Package
 
 _HOWS = frozenset(
@@ -17,7 +17,7 @@ class AmentExports(NamedTuple):
     """What an ament package exports. exports: those that count on the target. dependencies: the packages of
     ament_export_dependencies(). found: all that dependants find along with it."""
 
-    exports: list[Exported]
+    exports: list[CMakeExport]
     dependencies: frozenset[str]
     found: frozenset[str]
 
@@ -27,7 +27,7 @@ class AmentExports(NamedTuple):
         return frozenset(export.how for export in self.exports)
 
 
-def read_ament_exports(view: View, package: Package) -> AmentExports | None:
+def read_ament_exports(view: TargetView, package: Package) -> AmentExports | None:
     """The exports of an ament package; None where it exports nothing, or where what it exports cannot be seen."""
     if package.build.ament_package is None:
         return None
@@ -41,7 +41,7 @@ def read_ament_exports(view: View, package: Package) -> AmentExports | None:
     return AmentExports(exports, dependencies, view.roles.found_with(named))
 
 
-def exports_something(exports: list[Exported]) -> bool:
+def exports_something(exports: list[CMakeExport]) -> bool:
     """Whether a package of ament calls a command that exports packages, targets, libraries or include directories."""
     return any(export.how in _HOWS for export in exports)
 

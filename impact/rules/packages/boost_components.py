@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import linked_items
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP
-from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, Exported, linked_packages, list_linked, stem_of
+from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, linked_packages, list_linked, stem_of
 
 
 class BoostComponents(NamedTuple):
@@ -20,7 +20,7 @@ class BoostComponents(NamedTuple):
     more: bool
 
 
-def list_asked_components(view: View, package: Package) -> Set[str] | None:
+def list_asked_components(view: TargetView, package: Package) -> Set[str] | None:
     """The components of Boost that find_package() is given; None where no find_package() asks for Boost."""
     found = [
         f for f in package.build.found if f.how == "find_package" and f.name == "Boost" and view.active(f.conditions)
@@ -30,7 +30,7 @@ def list_asked_components(view: View, package: Package) -> Set[str] | None:
 
 
 def find_linked_components(
-    view: View, package: Package, targets: Mapping[str, BuildTarget], name: str, asked: Set[str]
+    view: TargetView, package: Package, targets: Mapping[str, BuildTarget], name: str, asked: Set[str]
 ) -> BoostComponents | None:
     """What a target is linked to, itself or through targets of its package; None when that cannot be seen."""
     items = linked_items(package, name)
@@ -72,7 +72,7 @@ def find_linked_components(
 _BRING_BOOST = frozenset({"PCL", "gazebo", "ompl", "Gazebo", "rosbag2_cpp"})
 
 
-def lacks_boost(view: View, package: Package, target: BuildTarget, component: str) -> bool:
+def lacks_boost(view: TargetView, package: Package, target: BuildTarget, component: str) -> bool:
     """True for a program of a catkin package to which nothing it is linked to can bring a component of Boost: of all
     packages that export some of Boost only those of ROS's core are among it, whose components are known."""
     catkin = package.build_type == "catkin" and view.target.ros == 1
@@ -83,7 +83,7 @@ def lacks_boost(view: View, package: Package, target: BuildTarget, component: st
         return False
     if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
         return False
-    exported = Exported(view)
+    exported = CatkinExports(view)
     brought = exported.closure(linked_packages(view, package, linked))
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought

@@ -21,7 +21,7 @@ Not reported
     Names under a condition that is not known; packages whose build type is not known.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -49,7 +49,7 @@ _HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
         ),
     },
 )
-def catkin_depends(view: View):
+def catkin_depends(view: TargetView):
     for package in view if view.target.ros == 1 else ():
         build = package.build
         if build.catkin_package is None or package.build_type != "catkin":
@@ -78,7 +78,7 @@ def catkin_depends(view: View):
             yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
 
 
-def _why_not_catkin(view: View, name: str) -> tuple[str, bool]:
+def _why_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:
     """Why a package is no catkin package on the target (`cmake`, `system`), and whether that is sure; empty when it is
     one or may be."""
     own = view.workspace.packages.get(name)

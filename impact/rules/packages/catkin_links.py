@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 
 from ...model.cmake.links import linked_items
-from ...model.view import View
+from ...model.view import TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
@@ -24,10 +24,10 @@ PACKAGE_VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPO
 """A variable that names what is linked of a package."""
 
 
-class Exported:
+class CatkinExports:
     """What catkin packages hand on to whoever links them."""
 
-    def __init__(self, view: View):
+    def __init__(self, view: TargetView):
         self._view = view
 
     def libraries(self, name: str) -> tuple[str, ...]:
@@ -92,7 +92,7 @@ def list_linked(package, target: str) -> set[str] | None:
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
-def linked_packages(view: View, package, items: Iterable[str]) -> set[str]:
+def linked_packages(view: TargetView, package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
     names = {stem_of(item).partition("::")[0] for item in items}
     if "catkin" in names:

@@ -22,7 +22,7 @@ Not reported
     Tests; targets under a condition that is unknown on the target.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -34,7 +34,7 @@ from ..text import Text
         "catkin_package() is called after {targets}", "call it before add_library() and add_executable()"
     ),
 )
-def catkin_package_order(view: View):
+def catkin_package_order(view: TargetView):
     for package in view:
         call = package.build.catkin_package
         if call is None or package.build_type != "catkin":

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from ...model.view import Need, View
+from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
 from ..severity import Doubt
@@ -24,7 +24,7 @@ _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
 
 
-def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """Of a need that nothing which the package declares answers. name: what would answer it, and can be had."""
     if need.role == "aside":
         return (Doubt.EXAMPLE,)
@@ -40,7 +40,7 @@ def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tu
     return doubts if need.required else (*doubts, Doubt.CONDITIONAL)
 
 
-def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
+def doubts_of_chance(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
     """Of a need that is answered by what happens to be installed along: none where the build farm, which builds the
     package's releases, installs no such thing, as it does not what is declared to run."""
     made = need.role == "build" or (need.role == "test" and need.how in ASKED and view.roles.farm_makes_tests)
@@ -51,7 +51,7 @@ def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, .
     return (Doubt.INCOMPLETE,) if is_grouped(package) or view.list_unknown(installed) else ()
 
 
-def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
+def doubts_of_compiled(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
     """Of an include that a target compiles, where the compiler is sure to stop at it."""
     doubts = () if view.built(need.role) else (Doubt.TEST,)
     if any(view.certain(target.conditions) for target in package.build.targets if target.name in need.targets):
@@ -59,7 +59,7 @@ def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt,
     return (*doubts, Doubt.CONDITIONAL)
 
 
-def is_chance(view: View, package: Package, need: Need, name: str) -> bool:
+def is_chance(view: TargetView, package: Package, need: Need, name: str) -> bool:
     """True where what a need rests on is installed for another role than the need's, or is handed on by nobody. name:
     what answers it. Whoever starts launch files has what their command brings, and what is declared for tests brings
     what tests include and import."""
@@ -80,7 +80,7 @@ def is_chance(view: View, package: Package, need: Need, name: str) -> bool:
     return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
 
 
-def _at_run_time(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _at_run_time(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """Of modules, and of what launch files and scripts start. What depends on the package itself cannot be declared,
     and who wants both has it."""
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
@@ -94,7 +94,7 @@ def _at_run_time(view: View, package: Package, need: Need, name: str) -> tuple[D
     return (Doubt.LATE,)
 
 
-def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _of_include(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     first = need.providers[0]
     if not need.targets:
         # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
@@ -113,7 +113,7 @@ def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Do
     return doubts
 
 
-def _unknown(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _unknown(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """INCOMPLETE where something that comes along has dependencies or contents that are not known, so that it may bring
     what is needed."""
     if is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
@@ -129,12 +129,12 @@ def is_grouped(package: Package) -> bool:
     return any(d.kind == "group" for d in package.manifest.dependencies)
 
 
-def _is_generated(view: View, name: str, header: str) -> bool:
+def _is_generated(view: TargetView, name: str, header: str) -> bool:
     """True for the header of an interface, which no tree of the released package shows."""
     return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.installed_with(name))
 
 
-def _stops_another(view: View, package: Package, need: Need) -> bool:
+def _stops_another(view: TargetView, package: Package, need: Need) -> bool:
     """True when another package of the workspace compiles the installed header, and nothing brings it what that
     includes either."""
     for other in view.everyone():

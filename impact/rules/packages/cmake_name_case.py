@@ -21,7 +21,7 @@ Not reported
     workspace.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import not_answering
 from ..fix_actions import Replace
 from ..rule import Diagnostic, rule
@@ -42,13 +42,13 @@ from ..text import Text
         ),
     },
 )
-def cmake_name_case(view: View):
+def cmake_name_case(view: TargetView):
     for package in view:
         yield from _list_unknown_spellings(view, package)
         yield from _list_lost_spellings(view, package)
 
 
-def _list_unknown_spellings(view: View, package):
+def _list_unknown_spellings(view: TargetView, package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
     own = view.workspace.cmake_files
     for f in package.build.found:
@@ -68,7 +68,7 @@ def _list_unknown_spellings(view: View, package):
         yield Diagnostic(f.at, f.name, package.name, {"replacement": meant[0]}, "case", doubts, fix=fix)
 
 
-def _list_lost_spellings(view: View, package):
+def _list_lost_spellings(view: TargetView, package):
     """find_package names to which the target's version of a library answers no longer, where the build needs them."""
     linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
     for f in package.build.found:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 
 
-def compiled_elsewhere(view: View, package: Package, header: str) -> bool:
+def compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
     """Whether a target of another package compiles a header of this one in any case. header: path in the workspace."""
     name = f"/{header}".rpartition("/include/")[2]
     return any(
@@ -22,7 +22,7 @@ def compiled_elsewhere(view: View, package: Package, header: str) -> bool:
     )
 
 
-def links_without(view: View, package: Package, target: BuildTarget, needed: str) -> bool:
+def links_without(view: TargetView, package: Package, target: BuildTarget, needed: str) -> bool:
     """Whether another package links an exported target of this one, and finds `needed` neither by itself nor along with
     others: CMake stops at a target of it. needed: as CMake calls it."""
     names = {needed.lower(), *(provider.name.lower() for provider in view.cmake(needed))}
@@ -37,7 +37,7 @@ def links_without(view: View, package: Package, target: BuildTarget, needed: str
     return False
 
 
-def _links(view: View, package: Package, other: str, target: str) -> bool:
+def _links(view: TargetView, package: Package, other: str, target: str) -> bool:
     """Whether a target that is built in any case is linked to one of another package, by name or as all that it has."""
     return any(
         package_of(link.item) == other
@@ -49,7 +49,7 @@ def _links(view: View, package: Package, other: str, target: str) -> bool:
     )
 
 
-def is_only_loaded(view: View, package: Package) -> bool:
+def is_only_loaded(view: TargetView, package: Package) -> bool:
     """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
     plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
     return plugins and not any(

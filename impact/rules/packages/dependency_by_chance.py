@@ -23,7 +23,7 @@ Not reported
     whoever starts launch files has; conditional code.
 """
 
-from ...model.view import View, weight
+from ...model.view import TargetView, weight
 from ..rule import Diagnostic, rule
 from ..text import Text
 from .clean_machine import doubts_of_chance, is_chance
@@ -36,7 +36,7 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
     group="undeclared-package",
     texts=Text("{use}, and `{subject}` only comes along with {sources}", DECLARE),
 )
-def dependency_by_chance(view: View):
+def dependency_by_chance(view: TargetView):
     for package in view:
         declared = view.declared(package)
         for name, needs in find_undeclared(view, package).borrowed.items():

@@ -19,7 +19,7 @@ Not reported
     Cycles that only exist with test or documentation dependencies: colcon ignores those that would close a cycle.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -41,7 +41,7 @@ _MOST_EDGES = 2_000_000
         ),
     },
 )
-def dependency_cycle(view: View):
+def dependency_cycle(view: TargetView):
     from graphlib import CycleError, TopologicalSorter
 
     needs: dict[str, set[str]] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Set
 from typing import NamedTuple
 
-from ...model.view import Need, View
+from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
 from ..fix_actions import Declare, Remove
@@ -26,7 +26,7 @@ class WrongKind(NamedTuple):
     lacking: str
 
 
-def list_wrong_kinds(view: View, package: Package) -> list[WrongKind]:
+def list_wrong_kinds(view: TargetView, package: Package) -> list[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
     key = "wrong kinds", package.name
     if key not in view.worked_out:
@@ -34,7 +34,7 @@ def list_wrong_kinds(view: View, package: Package) -> list[WrongKind]:
     return view.worked_out[key]
 
 
-def _list_wrong_kinds(view: View, package: Package) -> Iterator[WrongKind]:
+def _list_wrong_kinds(view: TargetView, package: Package) -> Iterator[WrongKind]:
     declared = view.declared(package)
     seen: set[str] = set()
     brought: dict[Set[str], frozenset[str]] = {}
@@ -65,7 +65,7 @@ def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
     return "", frozenset()
 
 
-def fix_kind(view: View, package: Package, name: str, tag: str, kinds: Set[str]) -> tuple[Declare | Remove, ...]:
+def fix_kind(view: TargetView, package: Package, name: str, tag: str, kinds: Set[str]) -> tuple[Declare | Remove, ...]:
     """Declares a name for more than it is declared for. What is declared for tests alone is declared anew, since
     `depend` beside `test_depend` says one thing twice."""
     path = package.digest.manifest_path

@@ -24,7 +24,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, package_of, public_links
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -47,7 +47,7 @@ _COMPONENTS = "find it with its components in a file given to ament_package(CONF
         ),
     },
 )
-def export_without_components(view: View):
+def export_without_components(view: TargetView):
     for package in view:
         ament = read_ament_exports(view, package)
         if ament is not None:
@@ -61,7 +61,7 @@ _COMPONENTS_ALONE = {"Boost": frozenset({"boost", "headers"}), "Qt5": frozenset(
 _NONE_WITHOUT = frozenset({"Qt5", "Qt6"})
 
 
-def _list_without_components(view: View, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+def _list_without_components(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
     """Targets of components that an exported target passes on, whose package dependants find without components."""
     handed = {f.name for f in package.build.handed_on if f.components}
     seen: set[str] = set()

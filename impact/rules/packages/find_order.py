@@ -25,7 +25,7 @@ Not reported
 
 import re
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -41,7 +41,7 @@ _BRINGS_MODULES = re.compile(r"cmake_modules?\Z")
         "call find_package({subject} REQUIRED) first",
     ),
 )
-def find_order(view: View):
+def find_order(view: TargetView):
     for package in view:
         own = {name.rsplit("/", 1)[-1] for name in package.files if name.endswith(".cmake")}
         asked = [f for f in package.build.found if f.how in ("find_package", "catkin") and view.certain(f.conditions)]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.surface.offers import Offers
 from ..severity import Doubt
 
 
-def shares_one_folder(view: View) -> bool:
+def shares_one_folder(view: TargetView) -> bool:
     """Whether the headers of all released packages lie in one folder, and go on to with all updates that are known."""
     return all(offers.has_one_include_folder for offers in (view.offers, *(view.offers_on(a)[0] for a in view.updates)))
 
 
-def doubts_of_folder(view: View, name: str, header: str) -> tuple[Doubt, ...] | None:
+def doubts_of_folder(view: TargetView, name: str, header: str) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a header's package is not given to what includes it; None where the header
     lies in the folder that packages have in common, and goes on to."""
     own = _has_own_folder(view, view.offers, name, header)
@@ -24,7 +24,7 @@ def doubts_of_folder(view: View, name: str, header: str) -> tuple[Doubt, ...] | 
     return None
 
 
-def _has_own_folder(view: View, offers: Offers, name: str, header: str) -> bool | None:
+def _has_own_folder(view: TargetView, offers: Offers, name: str, header: str) -> bool | None:
     if name in view.workspace.packages:
         return not offers.has_one_include_folder
     return offers.has_own_folder(name, header)

@@ -23,7 +23,7 @@ import posixpath
 import re
 
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -43,7 +43,7 @@ _APART = re.compile(
         help="add `<{tag}>{subject}</{tag}>`, if that is not meant",
     ),
 )
-def incomplete_metapackage(view: View):
+def incomplete_metapackage(view: TargetView):
     for package in view:
         if not package.manifest.metapackage:
             continue

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 
 
-def list_installing(view: View) -> Iterator[tuple[Package, list[Install]]]:
+def list_installing(view: TargetView) -> Iterator[tuple[Package, list[Install]]]:
     """The packages whose install rules are known, with those that count on the target."""
     for package in view:
         if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
@@ -41,7 +41,7 @@ def has_only_data(package: Package, installs: list[Install]) -> bool:
     return not installs and package.build_type == "catkin" and not package.build.targets
 
 
-def list_references(view: View) -> dict[str, dict[str, set[str]]]:
+def list_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
     """Package to what the workspace's launch files and scripts start or open in it: kind to names."""
     found: dict[str, dict[str, set[str]]] = {}
     for package in view.workspace:

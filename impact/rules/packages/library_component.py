@@ -18,7 +18,7 @@ Use instead
     find_package(Boost REQUIRED)                # and boost/signals2, which is header-only
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import gone_component
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -33,14 +33,14 @@ from ..text import Text
         "upcoming": Text("`{subject}` will be removed: not in {library} {version} ({horizon})", "{advice}"),
     },
 )
-def library_component(view: View):
+def library_component(view: TargetView):
     for package in view:
         for found in package.build.found:
             if found.how == "find_package" and view.active(found.conditions):
                 yield from _list_gone(view, package, found)
 
 
-def _list_gone(view: View, package, found):
+def _list_gone(view: TargetView, package, found):
     """Components that the target's version of the library, or that of the newest distro, does not have."""
     newest = view.newest
     certain = view.certain(found.conditions)

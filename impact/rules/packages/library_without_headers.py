@@ -22,7 +22,7 @@ Not reported
 
 import re
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -43,12 +43,12 @@ from .dependency_kinds import FOR_RUN, fix_kind
         ),
     },
 )
-def library_without_headers(view: View):
+def library_without_headers(view: TargetView):
     for package in view:
         yield from _list_bare(view, package)
 
 
-def _list_bare(view: View, package):
+def _list_bare(view: TargetView, package):
     """Keys that install a library without its headers, where built code wants the headers."""
     declared = view.declared(package)
     bare = {
@@ -81,7 +81,7 @@ def _list_bare(view: View, package):
         yield Diagnostic(view.manifest_place(package, place), right, package.name, data, "bare", doubts)
 
 
-def _lacks(view: View, package, need) -> bool:
+def _lacks(view: TargetView, package, need) -> bool:
     """True when compiled code is sure not to find the headers: nothing that is declared brings them in turn."""
     if need.how == "include" and not need.targets:
         return False
@@ -90,7 +90,7 @@ def _lacks(view: View, package, need) -> bool:
     return not view.answered(need.providers, view.may_bring(package))
 
 
-def _list_handed_on(view: View, package, declared, bare, need, seen):
+def _list_handed_on(view: TargetView, package, declared, bare, need, seen):
     """A library whose headers are declared for building, and without headers for whoever includes the public header."""
     right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
     if right is None or right in seen:

@@ -26,7 +26,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -51,14 +51,14 @@ from .install_rules import is_installed, list_installing
         ),
     },
 )
-def misplaced_install(view: View):
+def misplaced_install(view: TargetView):
     for package, installs in list_installing(view):
         yield from _list_doubled(view, package, installs)
         yield from _list_not_executable(view, package, installs)
         yield from _list_renamed(view, package, installs)
 
 
-def _list_doubled(view: View, package, installs) -> Iterator[Diagnostic]:
+def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Folders called include that are installed into one of that name, so that headers end up in include/include."""
     for install in installs:
         if install.kind != "directory" or install.destination.rstrip("/").rpartition("/")[2] != "include":
@@ -69,7 +69,7 @@ def _list_doubled(view: View, package, installs) -> Iterator[Diagnostic]:
                 yield Diagnostic(install.at, "include", package.name, kind="doubled", doubts=doubts)
 
 
-def _is_lost(view: View, package, install, folder: str) -> bool:
+def _is_lost(view: TargetView, package, install, folder: str) -> bool:
     """True when another package of the workspace compiles a header of the folder, or the package exports the place
     where its headers should lie, and no other rule installs them there."""
     if not view.certain(install.conditions) or package.build.unresolved:
@@ -93,7 +93,7 @@ def _is_lost(view: View, package, install, folder: str) -> bool:
     )
 
 
-def _list_not_executable(view: View, package, installs) -> Iterator[Diagnostic]:
+def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
     for install in installs:
@@ -111,7 +111,7 @@ def _list_not_executable(view: View, package, installs) -> Iterator[Diagnostic]:
                 yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
 
 
-def _is_node(view: View, package, script: str) -> bool:
+def _is_node(view: TargetView, package, script: str) -> bool:
     """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
     return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
 
@@ -120,7 +120,7 @@ def _is_node(view: View, package, script: str) -> bool:
 _RUN_BY = (".launch.py", "setup.py", "conftest.py")
 
 
-def _list_renamed(view: View, package, installs) -> Iterator[Diagnostic]:
+def _list_renamed(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
     for install in installs:
         if install.kind != "directory":

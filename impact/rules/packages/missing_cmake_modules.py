@@ -22,7 +22,7 @@ Not reported
     Packages with a module of their own; libraries whose platform package has a configuration for CMake.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -37,7 +37,7 @@ from ..text import Text
         "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
     ),
 )
-def missing_cmake_modules(view: View):
+def missing_cmake_modules(view: TargetView):
     if view.target.ros != 1 or view.target.distro in ("groovy", "hydro"):
         return
     for package in view:
@@ -45,7 +45,7 @@ def missing_cmake_modules(view: View):
             yield from _list_unfound(view, package)
 
 
-def _list_unfound(view: View, package):
+def _list_unfound(view: TargetView, package):
     """find_package calls whose find module comes with a package that is not found before."""
     names = {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
@@ -63,7 +63,7 @@ def _list_unfound(view: View, package):
         yield Diagnostic(found.at, "cmake_modules", package.name, {"name": found.name}, doubts=doubts)
 
 
-def _lacks_eigen(view: View, package) -> bool:
+def _lacks_eigen(view: TargetView, package) -> bool:
     """True when code that is built here includes Eigen, whose headers lie in a folder of their own, and nothing that is
     found brings it."""
     found = {f.name for f in package.build.found} - {"Eigen"}
@@ -77,6 +77,6 @@ def _lacks_eigen(view: View, package) -> bool:
     )  # fmt: skip
 
 
-def _is_brought(view: View, name: str) -> bool:
+def _is_brought(view: TargetView, name: str) -> bool:
     """Whether cmake_modules has a find module of this name."""
     return any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.cmake(name))

@@ -29,7 +29,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, passed_on_package, public_links
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
@@ -54,7 +54,7 @@ _ADD = "add `{subject}` to ament_export_dependencies"
         ),
     },
 )
-def missing_export(view: View):
+def missing_export(view: TargetView):
     for package in view:
         if package.build.catkin_package is not None:
             yield from _list_of_messages(view, package)
@@ -70,7 +70,7 @@ def missing_export(view: View):
 _BY_TARGET = "0.9.0"
 
 
-def _list_linked(view: View, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
+def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
     """Packages that an exported target passes on, and that dependants are not seen to find: CMake stops at a target of
     theirs."""
     reach = {name.lower() for name in ament.found}
@@ -94,7 +94,7 @@ def _list_linked(view: View, package: Package, ament: AmentExports, seen: set[st
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
 
 
-def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
+def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
     if link.how == "ament" and is_only_loaded(view, package):
         return (Doubt.UNCOMPILED,)
     if _comes_with_client_library(view, name):
@@ -106,12 +106,12 @@ def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) 
     return () if by_target and links_without(view, package, target, name) else (Doubt.DISTURBS,)
 
 
-def _comes_with_client_library(view: View, name: str) -> bool:
+def _comes_with_client_library(view: TargetView, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
     return name in view.spread(("rclcpp",))
 
 
-def _list_included(view: View, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
+def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
     """Packages that installed headers include."""
     links = not ament.hows.isdisjoint(("ament_export_libraries", "ament_export_targets"))
     needed = links or package.name in view.workspace.includers
@@ -132,7 +132,7 @@ def _list_included(view: View, package: Package, ament: AmentExports, seen: set[
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts, together=few)
 
 
-def _list_of_messages(view: View, package):
+def _list_of_messages(view: TargetView, package):
     """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}

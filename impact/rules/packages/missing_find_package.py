@@ -25,7 +25,7 @@ Not reported
 
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
-from ...model.view import View, interface_of
+from ...model.view import TargetView, interface_of
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -56,7 +56,7 @@ _SYSTEM_BY_DEFAULT = (
         ),
     },
 )
-def missing_find_package(view: View):
+def missing_find_package(view: TargetView):
     for package in view:
         build = package.build
         if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
@@ -106,7 +106,7 @@ def missing_find_package(view: View):
             yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
 
 
-def _doubt_of_include(view: View, need) -> Doubt | None:
+def _doubt_of_include(view: TargetView, need) -> Doubt | None:
     """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
     if not (need.targets or need.public):
         return Doubt.UNCOMPILED
@@ -122,7 +122,7 @@ def _doubt_of_include(view: View, need) -> Doubt | None:
 _PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
 
 
-def _only_placed(view: View, package):
+def _only_placed(view: TargetView, package):
     """Libraries whose vendor package is found and no longer finds them."""
     found = {f.name: f for f in package.build.found}
     for vendor, since, library, root in _PLACING:
@@ -143,5 +143,5 @@ def _only_placed(view: View, package):
         yield Diagnostic(asked.at, library, package.name, data, "placed", (asked.required or Doubt.OPTIONAL,))
 
 
-def _cmake_of(view: View, name: str) -> set[str]:
+def _cmake_of(view: TargetView, name: str) -> set[str]:
     return {p.name for p in view.cmake(name)}

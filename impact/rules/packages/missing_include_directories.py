@@ -20,7 +20,7 @@ Not reported
     Packages that use the include directories of any package of ROS, since all of ROS lies in one folder.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -34,13 +34,13 @@ from ..text import Text
         "`{target}` includes `{header}` but does not get {subject}", "include_directories(${{catkin_INCLUDE_DIRS}})"
     ),
 )
-def missing_include_directories(view: View):
+def missing_include_directories(view: TargetView):
     for package in view:
         if package.build_type == "catkin":
             yield from _list_without(view, package)
 
 
-def _list_without(view: View, package):
+def _list_without(view: TargetView, package):
     """catkin packages that are found, and whose include directories no target gets."""
     build = package.build
     if not any(f.how == "catkin" for f in build.found) or build.unresolved:

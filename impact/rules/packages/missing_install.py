@@ -27,7 +27,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.package import role_of_folder
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -47,14 +47,14 @@ _TARGETS = "add it to install(TARGETS ...)"
         "program": Text("`{subject}` is not installed, although other executables are", _TARGETS),
     },
 )
-def missing_install(view: View):
+def missing_install(view: TargetView):
     references = list_references(view)
     for package, installs in list_installing(view):
         started = references.get(package.name, {}).get("executable", set())
         yield from _list_targets(view, package, installs, started)
 
 
-def _list_targets(view: View, package, installs, started: set[str]) -> Iterator[Diagnostic]:
+def _list_targets(view: TargetView, package, installs, started: set[str]) -> Iterator[Diagnostic]:
     installed = {item for i in installs if i.kind == "targets" for item in i.items}
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
@@ -91,7 +91,7 @@ def _list_targets(view: View, package, installs, started: set[str]) -> Iterator[
             yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts)
 
 
-def _is_started(view: View, package, name: str) -> bool:
+def _is_started(view: TargetView, package, name: str) -> bool:
     """True when an installed launch file starts a program of the package in any case."""
     for other in view.everyone():
         installs = [i for i in other.build.installs if view.certain(i.conditions)]

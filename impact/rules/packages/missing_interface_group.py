@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.view import View
+from ...model.view import TargetView
 from ..fix_actions import Declare
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -40,7 +40,7 @@ _GROUP = "rosidl_interface_packages"
         "add `<member_of_group>{subject}</member_of_group>` to package.xml",
     ),
 )
-def missing_interface_group(view: View):
+def missing_interface_group(view: TargetView):
     for package in view:
         if not package.build_type.startswith("ament"):
             continue

@@ -22,7 +22,7 @@ Not reported
 
 import re
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..fix_actions import Insert
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -38,13 +38,13 @@ from ..text import Text
         ),
     },
 )
-def missing_interface_wiring(view: View):
+def missing_interface_wiring(view: TargetView):
     for package in view:
         if package.build_type == "catkin":
             yield from _list_unordered(view, package)
 
 
-def _list_unordered(view: View, package):
+def _list_unordered(view: TargetView, package):
     orders = _find_orders(package)
     targets = {t.name: t for t in package.build.targets if t.kind in ("executable", "library", "test")}
     generates = any(g.how == "catkin" for g in package.build.generated)

@@ -20,7 +20,7 @@ Not reported
     Packages that find a generator themselves, or genmsg, which looks for those that are installed.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -35,7 +35,7 @@ from ..text import Text
         "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...)",
     ),
 )
-def missing_message_generation(view: View):
+def missing_message_generation(view: TargetView):
     for package in view:
         if package.build_type != "catkin":
             continue

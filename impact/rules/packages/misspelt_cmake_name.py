@@ -22,8 +22,8 @@ Not reported
     Names that anybody is known to provide, that some distro has released, or that no declared name resembles.
 """
 
-from ...model.misspelling import Names
-from ...model.view import View
+from ...model.misspelling import SpellingIndex
+from ...model.view import TargetView
 from ..fix_actions import Replace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -38,7 +38,7 @@ from ..text import Text
         "near": Text("no package provides `{subject}`; `{replacement}` is declared", "write `{replacement}`"),
     },
 )
-def misspelt_cmake_name(view: View):
+def misspelt_cmake_name(view: TargetView):
     for package in view:
         declared = view.declared(package)
         found = {f.name for f in package.build.found}
@@ -49,7 +49,7 @@ def misspelt_cmake_name(view: View):
             if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
                 continue
             if near is None:
-                near = Names(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
+                near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
             halves = _run_together(name, near.names)
             if halves:
                 sure = required or (exported and view.certain(conditions))

@@ -24,7 +24,7 @@ Not reported
 import re
 
 from ...model.misspelling import is_slip
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import variables
 from ..fix_actions import Replace
 from ..rule import Diagnostic, rule
@@ -54,7 +54,7 @@ _SUFFIXES = (
         ),
     },
 )
-def misspelt_cmake_variable(view: View):
+def misspelt_cmake_variable(view: TargetView):
     for package in view:
         yield from _list_misspelt(view, package)
 
@@ -76,7 +76,7 @@ def _set_by_hand(package) -> set[str]:
     return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
 
 
-def _list_misspelt(view: View, package):
+def _list_misspelt(view: TargetView, package):
     """Variables that only differ in case, or by a letter, from what a find_package of the package sets."""
     found = sorted({f.name for f in package.build.found})
     folded = {name.lower(): name for name in found}

@@ -27,7 +27,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import variables
 from ..rule import Diagnostic, rule
@@ -62,7 +62,7 @@ from .ament_exports import list_installed_targets, read_ament_exports
         ),
     },
 )
-def nonexistent_export(view: View):
+def nonexistent_export(view: TargetView):
     for package in view:
         if package.build.catkin_package is not None:
             yield from _list_directories(view, package)
@@ -72,7 +72,7 @@ def nonexistent_export(view: View):
             yield from _list_of_ament(view, package, ament.exports)
 
 
-def _list_directories(view: View, package):
+def _list_directories(view: TargetView, package):
     made = {posixpath.normpath(i.destination) for i in package.build.installs}
     for export in package.build.exports:
         if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
@@ -86,7 +86,7 @@ def _list_directories(view: View, package):
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 
 
-def _list_of_catkin(view: View, package):
+def _list_of_catkin(view: TargetView, package):
     targets = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     for export in package.build.exports:
@@ -111,7 +111,7 @@ def _list_of_catkin(view: View, package):
             yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
 
 
-def _is_own(view: View, package, library: str) -> bool:
+def _is_own(view: TargetView, package, library: str) -> bool:
     """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
     if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
         return False
@@ -131,7 +131,7 @@ def _sets(package, stem: str) -> bool:
     return False
 
 
-def _list_of_ament(view: View, package: Package, exports) -> Iterator[Diagnostic]:
+def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diagnostic]:
     """ament_export_libraries() of what no target makes, of which dependants are only warned, or of a target that is not
     installed, at which they stop."""
     targets = {t.name: t for t in package.build.targets if t.kind != "unknown"}

@@ -25,7 +25,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 from .install_rules import list_installing
@@ -47,13 +47,13 @@ from .install_rules import list_installing
         ),
     },
 )
-def nonexistent_install(view: View):
+def nonexistent_install(view: TargetView):
     for package, installs in list_installing(view):
         yield from _list_absent(view, package, installs)
         yield from _list_unset(view, package)
 
 
-def _list_absent(view: View, package, installs) -> Iterator[Diagnostic]:
+def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     made = frozenset(package.build.made)
     for install in installs:
         if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
@@ -100,7 +100,7 @@ def _is_written(path: str) -> bool:
 _PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_ENV"})
 
 
-def _list_unset(view: View, package) -> Iterator[Diagnostic]:
+def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     seen = set()
     for use in package.build.uses:

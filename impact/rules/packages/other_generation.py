@@ -20,7 +20,7 @@ Use instead
 
 from ...model.cmake.build import At
 from ...model.package import build_type_of
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -33,7 +33,7 @@ from ..text import Text
         help="check against a ROS {generation} target",
     ),
 )
-def other_generation(view: View):
+def other_generation(view: TargetView):
     packages = [p for p in view.workspace if not p.manifest.metapackage]
     foreign = [p for p in packages if _other(view, p)]
     if not packages or len(foreign) < len(packages):
@@ -45,7 +45,7 @@ def other_generation(view: View):
     yield Diagnostic(At(first.digest.manifest_path, first.manifest.line), first.name, first.name, data)
 
 
-def _other(view: View, package) -> bool:
+def _other(view: TargetView, package) -> bool:
     """True for packages that say they build with the other generation's tools; plain CMake and Python build in both."""
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)

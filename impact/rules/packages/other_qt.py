@@ -20,7 +20,7 @@ Not reported
     Packages that find Qt 5 too.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -35,7 +35,7 @@ from ..text import Text
         "`{package}` finds Qt 4, but rviz {version} is built with Qt 5", "find_package(Qt5 COMPONENTS Core Widgets)"
     ),
 )
-def other_qt(view: View):
+def other_qt(view: TargetView):
     rviz = view.target.version("rviz") or ""
     if not rviz or not at_least(rviz, "1.12"):
         return

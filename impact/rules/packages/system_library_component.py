@@ -20,7 +20,7 @@ Not reported
     Names that were found before on their own, since CMake remembers where; packages of the workspace.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -35,13 +35,13 @@ from ..text import Text
         "find_package({subject} REQUIRED), or pkg-config, on its own",
     ),
 )
-def system_library_component(view: View):
+def system_library_component(view: TargetView):
     for package in view:
         if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
             yield from _list_components(view, package)
 
 
-def _list_components(view: View, package):
+def _list_components(view: TargetView, package):
     """Components asked of catkin that are system libraries on the target, which catkin cannot find as components. One
     that was found before is found again: CMake remembers where it is."""
     before: set[str] = set()

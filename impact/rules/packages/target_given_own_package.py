@@ -20,7 +20,7 @@ Not reported
 """
 
 from ...model.cmake.links import stops_at_names
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -34,7 +34,7 @@ from ..text import Text
         "target_link_libraries({target} {package})",
     ),
 )
-def target_given_own_package(view: View):
+def target_given_own_package(view: TargetView):
     if not stops_at_names(view):
         return
     for package in view:

@@ -20,7 +20,7 @@ Not reported
     Packages that declared ones bring along, optional ones, and those under a condition that is unknown on the target.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -38,7 +38,7 @@ _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
         help="add `<build_export_depend>{subject}</build_export_depend>` to {manifest}",
     ),
 )
-def undeclared_by_script(view: View):
+def undeclared_by_script(view: TargetView):
     for package in view:
         if not package.build.handed_on:
             continue

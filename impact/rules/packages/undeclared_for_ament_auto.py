@@ -21,7 +21,7 @@ Not reported
     Names in variables whose value is unknown.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -39,7 +39,7 @@ _KINDS = frozenset(("build", "buildtool", "test"))
         help="declare `{subject}` by this name, or find_package({subject} REQUIRED) on its own",
     ),
 )
-def undeclared_for_ament_auto(view: View):
+def undeclared_for_ament_auto(view: TargetView):
     for package in view:
         named = {d.name for d in package.manifest.dependencies if d.kind in _KINDS}
         for found in package.build.found:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...model.misspelling import folded, one_edit
-from ...model.view import Need, View
+from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular, name_to_declare, present
 from ..fix_actions import Declare
@@ -24,7 +24,7 @@ class Undeclared(NamedTuple):
     borrowed: dict[str, list[Need]]
 
 
-def find_undeclared(view: View, package: Package) -> Undeclared:
+def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
     key = "undeclared needs", package.name
     if key not in view.worked_out:
@@ -32,7 +32,7 @@ def find_undeclared(view: View, package: Package) -> Undeclared:
     return view.worked_out[key]
 
 
-def _find_undeclared(view: View, package: Package) -> Undeclared:
+def _find_undeclared(view: TargetView, package: Package) -> Undeclared:
     closure, declared = view.closure(package), view.declared(package)
     found = Undeclared({}, {})
     for need in view.needs(package):
@@ -70,7 +70,7 @@ def _describe_use(need: Need) -> str:
     }[need.how]
 
 
-def declare_need(view: View, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
+def declare_need(view: TargetView, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
     """Declares what answers a need; nothing where the manifest has the name with a letter wrong, which another rule
     repairs."""
     if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):

@@ -33,7 +33,7 @@ Not reported
     provide (they are counted as unresolved).
 """
 
-from ...model.view import View, weight
+from ...model.view import TargetView, weight
 from ..rule import Diagnostic, rule
 from ..severity import AT_RUN_TIME, Together, severity
 from ..text import Text
@@ -46,7 +46,7 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
     severity="error",
     texts=Text("{use}, and nothing that `{package}` declares brings `{subject}`", DECLARE),
 )
-def undeclared_package(view: View):
+def undeclared_package(view: TargetView):
     for package in view:
         missing = find_undeclared(view, package).missing
         # A package that leaves out many things it runs with is told of the first few.

@@ -21,7 +21,7 @@ Not reported
     Commands whose package is found by name, or along with another one.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..evidence import present
 from ..fix_actions import Declare
 from ..rule import Diagnostic, rule
@@ -42,7 +42,7 @@ _TESTS = "ament_cmake_test"
         help="add `<test_depend>{subject}</test_depend>` to {manifest}, and find_package({subject} REQUIRED)",
     ),
 )
-def undeclared_test_command(view: View):
+def undeclared_test_command(view: TargetView):
     for package in view:
         if not package.build_type.startswith("ament"):
             continue
@@ -65,7 +65,7 @@ def undeclared_test_command(view: View):
             )
 
 
-def _find_owners(view: View) -> dict[str, str]:
+def _find_owners(view: TargetView) -> dict[str, str]:
     """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
     ament_cmake_test, in the newest version that is stored."""
     known = view.worked_out.get(("test commands", ""))
@@ -81,7 +81,7 @@ def _find_owners(view: View) -> dict[str, str]:
     return known
 
 
-def _doubts(view: View, package, name: str, conditions) -> tuple[Doubt, ...]:
+def _doubts(view: TargetView, package, name: str, conditions) -> tuple[Doubt, ...]:
     if is_grouped(package) or view.blind(package) or name in view.may_bring(package):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)

@@ -22,7 +22,7 @@ Not reported
     does not have; code that is not built.
 """
 
-from ...model.view import Need, View
+from ...model.view import Need, TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 from .clean_machine import doubts_of_compiled
@@ -36,7 +36,7 @@ from .clean_machine import doubts_of_compiled
         help="add `<depend>{subject}</depend>` to {manifest}",
     ),
 )
-def undeclared_through_header(view: View):
+def undeclared_through_header(view: TargetView):
     for package in view:
         if not package.digest.includes or view.blind(package):
             continue
@@ -60,7 +60,7 @@ def undeclared_through_header(view: View):
                 )
 
 
-def _follow(view: View, need: Need) -> list[tuple[str, str]]:
+def _follow(view: TargetView, need: Need) -> list[tuple[str, str]]:
     """The packages of ROS that a released header leads to, besides its own, each with the first header of it."""
     known = view.worked_out.get(("led to", need.subject))
     if known is None:

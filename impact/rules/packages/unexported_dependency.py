@@ -21,7 +21,7 @@ Not reported
     What another dependency that is passed on brings.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -42,7 +42,7 @@ _AS_DEPEND = "declare it as `<{tag}>`"
         ),
     },
 )
-def unexported_dependency(view: View):
+def unexported_dependency(view: TargetView):
     for package in view:
         yield from _list_linked(view, package)
         for need, name, kinds, lacking in list_wrong_kinds(view, package):
@@ -56,7 +56,7 @@ def _tag(package: Package) -> str:
     return "run_depend" if package.manifest.format == 1 else "depend"
 
 
-def _list_linked(view: View, package: Package):
+def _list_linked(view: TargetView, package: Package):
     """System libraries that an exported library hands on to whoever links it, declared for building only."""
     declared = view.declared(package)
     installed = {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}

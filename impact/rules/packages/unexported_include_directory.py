@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -47,7 +47,7 @@ from .ament_exports import AmentExports, exports_something, list_installed_targe
         ),
     },
 )
-def unexported_include_directory(view: View):
+def unexported_include_directory(view: TargetView):
     for package in view:
         yield from _list_nothing(view, package)
         ament = read_ament_exports(view, package)
@@ -55,7 +55,7 @@ def unexported_include_directory(view: View):
             yield from _list_off_path(view, package, ament)
 
 
-def _list_nothing(view: View, package: Package) -> Iterator[Diagnostic]:
+def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Headers and a library that are installed, and nothing that tells dependants where."""
     first = package.build.ament_package
     exports = [e for e in package.build.exports if view.active(e.conditions)]
@@ -81,7 +81,7 @@ def _list_nothing(view: View, package: Package) -> Iterator[Diagnostic]:
 _OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
 
 
-def _list_off_path(view: View, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
     """Header-only packages that leave the include folder of a system library out."""
     if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
         return

@@ -27,7 +27,7 @@ Not reported
 import re
 
 from ...model.cmake.links import may_hide, package_of
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -42,12 +42,12 @@ _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
     group="missing-find-package",
     texts=Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
 )
-def ungiven_package(view: View):
+def ungiven_package(view: TargetView):
     for package in view:
         yield from _list_ungiven(view, package)
 
 
-def _list_ungiven(view: View, package):
+def _list_ungiven(view: TargetView, package):
     """Packages that are found, whose headers a target includes, and that the target is not given."""
     if package.build_type != "ament_cmake" or package.build.unresolved or shares_one_folder(view):
         return

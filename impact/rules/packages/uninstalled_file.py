@@ -26,7 +26,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -49,7 +49,7 @@ from .install_rules import has_only_data, is_installed, list_installing, list_re
         "script": Text("`{subject}` is started by a launch file but is not installed", "{how}"),
     },
 )
-def uninstalled_file(view: View):
+def uninstalled_file(view: TargetView):
     references = list_references(view)
     for package, installs in list_installing(view):
         used = references.get(package.name, {})

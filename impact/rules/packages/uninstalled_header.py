@@ -27,7 +27,7 @@ import re
 
 from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -45,7 +45,7 @@ _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
         help="install `{file}`, or include it from sources alone",
     ),
 )
-def uninstalled_header(view: View):
+def uninstalled_header(view: TargetView):
     for package in view:
         if not package.build.files or not package.digest.public_headers:
             continue
@@ -70,7 +70,7 @@ def uninstalled_header(view: View):
                 yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
 
 
-def _doubts(view: View, package: Package, path: str) -> tuple[Doubt, ...]:
+def _doubts(view: TargetView, package: Package, path: str) -> tuple[Doubt, ...]:
     """Of an installed header that lacks one of its own package: whoever includes it stops."""
     if _DETAIL.search(path) and package.name not in view.workspace.includers:
         return (Doubt.UNCOMPILED,)
@@ -79,7 +79,7 @@ def _doubts(view: View, package: Package, path: str) -> tuple[Doubt, ...]:
     return () if stops else (Doubt.DISTURBS,)
 
 
-def _include_of(view: View, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
+def _include_of(view: TargetView, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
     """The include that names another file of the package and stands under no condition."""
     name = posixpath.basename(to)
     for include in includes:

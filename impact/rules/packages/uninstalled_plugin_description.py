@@ -24,7 +24,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -43,13 +43,13 @@ from .install_rules import has_only_data, is_installed, list_installing
         ),
     },
 )
-def uninstalled_plugin_description(view: View):
+def uninstalled_plugin_description(view: TargetView):
     for package, installs in list_installing(view):
         if not has_only_data(package, installs):
             yield from _list_descriptions(view, package, installs)
 
 
-def _list_descriptions(view: View, package, installs) -> Iterator[Diagnostic]:
+def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Plugin descriptions that the manifest exports (catkin)."""
     for export in package.manifest.exports:
         value = export.attributes.get("plugin", "")
@@ -69,7 +69,7 @@ def _list_descriptions(view: View, package, installs) -> Iterator[Diagnostic]:
             yield Diagnostic(at, posixpath.basename(path), package.name, data, "description", doubts)
 
 
-def _is_shipped(view: View, package, installs, description: str) -> bool:
+def _is_shipped(view: TargetView, package, installs, description: str) -> bool:
     """True when a library that the description names is installed, so that the plugins are there for others."""
     if package.build.unresolved:
         return False

@@ -24,7 +24,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -48,12 +48,12 @@ _PARTLY_COMPILED = (
         "link to `{target}` what `{other}` links",
     ),
 )
-def unlinked_beside(view: View):
+def unlinked_beside(view: TargetView):
     for package in view:
         yield from _list_unlinked(view, package)
 
 
-def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
     """Programs that include a library's header and are not linked to it, beside a target that is."""
     targets = {t.name: t for t in package.build.targets}
     links: dict[str, set[str] | None] = {}

@@ -26,7 +26,7 @@ Not reported
 
 from collections.abc import Iterator, Set
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import BOOST_COMPILED, compiled_component
 from ..rule import Diagnostic, rule
@@ -50,7 +50,7 @@ _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component
         ),
     },
 )
-def unlinked_boost(view: View):
+def unlinked_boost(view: TargetView):
     for package in view:
         asked = list_asked_components(view, package)
         if asked is not None:
@@ -58,7 +58,7 @@ def unlinked_boost(view: View):
         yield from _list_unlinked(view, package, asked or frozenset())
 
 
-def _list_not_asked_for(view: View, package, asked: Set[str]) -> Iterator[Diagnostic]:
+def _list_not_asked_for(view: TargetView, package, asked: Set[str]) -> Iterator[Diagnostic]:
     """Imported targets of Boost whose component find_package() is not given."""
     seen = set(asked)
     for target in package.build.targets:
@@ -72,7 +72,7 @@ def _list_not_asked_for(view: View, package, asked: Set[str]) -> Iterator[Diagno
                 yield Diagnostic(link.at, subject, package.name, {"component": component}, "not asked for", doubts)
 
 
-def _list_unlinked(view: View, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
+def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
     """Headers of compiled Boost libraries in targets that nothing given to them links the component to."""
     boost = view.target.library("boost") or ""
     targets = {t.name: t for t in package.build.targets}
@@ -104,7 +104,7 @@ def _list_unlinked(view: View, package: Package, asked: Set[str]) -> Iterator[Di
             break
 
 
-def _list_doubts(view: View, include, target, known: BoostComponents) -> tuple[Doubt, ...]:
+def _list_doubts(view: TargetView, include, target, known: BoostComponents) -> tuple[Doubt, ...]:
     sure = not known.more and target.kind == "executable"
     # Who links a catkin library has Boost from roscpp.
     if include.role != "build" or (view.target.ros == 1 and not sure):

@@ -26,12 +26,12 @@ Not reported
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, plain, stem_of
+from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, plain, stem_of
 
 COMPILED = (
     ("yaml-cpp/", "yamlcpp"),
@@ -57,7 +57,7 @@ _COMPILED = (*COMPILED, ("gtest/gtest.h", "gtest"), ("gmock/gmock.h", "gmock"))
         "link the library to `{target}` with target_link_libraries()",
     ),
 )
-def unlinked_library(view: View):
+def unlinked_library(view: TargetView):
     for package in view:
         if package.build.unresolved or package.build_type not in ("catkin", "ament_cmake"):
             continue
@@ -97,7 +97,7 @@ def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
     return (Doubt.TEST,) if target.excluded else ()
 
 
-def _is_brought(view: View, package: Package, target: str, header: str, word: str) -> bool:
+def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str) -> bool:
     """Whether anything that a target is given links the library of a header, or may."""
     items = list_linked(package, target)
     if items is None or any(word.removesuffix("2") in plain(item) for item in items):
@@ -109,12 +109,12 @@ def _is_brought(view: View, package: Package, target: str, header: str, word: st
     packages = linked_packages(view, package, items)
     if view.target.ros == 2:
         return view.answered(view.header(header), view.spread(packages))
-    exported = Exported(view)
+    exported = CatkinExports(view)
     brought = exported.closure(packages)
     return brought is None or any(exported.may_bring(name, word) for name in brought)
 
 
-def _may_bring_anything(view: View, package: Package, item: str) -> bool:
+def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:
     """Whether it cannot be seen what an item brings: it is of no package of ROS and of no library that is known to come
     alone. A variable that no package found can set is empty."""
     name = stem_of(item) if "$" in item else package_of(item)

@@ -24,11 +24,11 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..rule import Diagnostic, rule
 from ..text import Text
-from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, stem_of
+from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, stem_of
 
 
 @rule(
@@ -40,7 +40,7 @@ from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked,
         "find_package(OpenCV REQUIRED) and target_link_libraries({target} ${{OpenCV_LIBRARIES}})",
     ),
 )
-def unlinked_opencv(view: View):
+def unlinked_opencv(view: TargetView):
     if view.target.ros != 1:
         return
     for package in view:
@@ -52,7 +52,7 @@ def unlinked_opencv(view: View):
 _WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
 
 
-def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
     """Programs that call functions of OpenCV which lie in libraries that nothing they are linked to hands on."""
     build = package.build
     if build.unresolved:
@@ -64,7 +64,7 @@ def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
     ]
     if not calls or any("$" in f.name for f in build.found):
         return
-    exported = Exported(view)
+    exported = CatkinExports(view)
     for target in build.targets:
         if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
             continue

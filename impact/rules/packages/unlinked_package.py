@@ -25,11 +25,11 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
 from ...model.package import IncludeUse
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
-from .catkin_links import Exported, linked_packages, list_linked, plain
+from .catkin_links import CatkinExports, linked_packages, list_linked, plain
 
 
 @rule(
@@ -46,7 +46,7 @@ from .catkin_links import Exported, linked_packages, list_linked, plain
         ),
     },
 )
-def unlinked_package(view: View):
+def unlinked_package(view: TargetView):
     for package in view:
         if package.build_type in ("catkin", "ament_cmake"):
             yield from _list_without_client(view, package)
@@ -58,7 +58,7 @@ def unlinked_package(view: View):
 _CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
 
 
-def _list_without_client(view: View, package):
+def _list_without_client(view: TargetView, package):
     """Programs that include a client library and are given nothing to link."""
     build = package.build
     if build.unresolved or build.links:
@@ -82,7 +82,7 @@ def _list_without_client(view: View, package):
                 yield Diagnostic(target.at, client, package.name, data, "client library")
 
 
-def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
+def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
     """Programs whose own sources the linker most likely misses a library for: they include its headers, and what they
     use of those is not looked at. What libraries of the package miss may come with any library that one of theirs needs
     in turn, which the linker finds by itself."""
@@ -92,7 +92,7 @@ def _list_unlinked(view: View, package) -> Iterator[Diagnostic]:
     found = {f.name for f in build.found}
     if any("$" in name for name in found):
         return
-    exported = Exported(view)
+    exported = CatkinExports(view)
     includes: dict[str, list[IncludeUse]] = {}
     for include in package.digest.includes:
         if include.role == "build" and view.certain(include.conditions):

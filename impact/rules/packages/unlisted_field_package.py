@@ -23,7 +23,7 @@ Not reported
 
 from ...facts.interface import PRIMITIVES
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -44,12 +44,12 @@ _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
         ),
     },
 )
-def unlisted_field_package(view: View):
+def unlisted_field_package(view: TargetView):
     for package in view:
         yield from _list_unknown_types(view, package)
 
 
-def _list_unknown_types(view: View, package):
+def _list_unknown_types(view: TargetView, package):
     generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.active(g.conditions)]
     if not generated:
         return
@@ -90,7 +90,7 @@ def _list_unknown_types(view: View, package):
                 yield Diagnostic(_place_of(interface, field), owner, package.name, data, "dependency", doubts)
 
 
-def _list_implied(view: View, files: set[str]) -> set[str]:
+def _list_implied(view: TargetView, files: set[str]) -> set[str]:
     """Packages that rosidl gives to the generator by itself for actions, and for services where they have events.
     Source: rosidl_generate_interfaces.cmake."""
     kinds = {file.rpartition(".")[2] for file in files}

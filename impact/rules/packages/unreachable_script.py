@@ -36,7 +36,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import At
 from ...model.python.programs import ScriptFolder, ScriptSetup, list_started_programs
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..fix_actions import Replace
 from ..rule import Diagnostic, rule
@@ -63,7 +63,7 @@ _BUILDS = {"install": "colcon build", "develop": "colcon build --symlink-install
         ),
     },
 )
-def unreachable_script(view: View) -> Iterator[Diagnostic]:
+def unreachable_script(view: TargetView) -> Iterator[Diagnostic]:
     if view.target.ros == 1:
         return
     for package in view:
@@ -90,7 +90,7 @@ def _is_wrong(package: Package, folder: ScriptFolder | None) -> bool:
 
 
 def _diagnose(
-    view: View, package: Package, setup: ScriptSetup, programs: dict[str, At], wrong: list[str]
+    view: TargetView, package: Package, setup: ScriptSetup, programs: dict[str, At], wrong: list[str]
 ) -> Diagnostic:
     """wrong: the commands that install into a wrong folder."""
     folders = setup.folders

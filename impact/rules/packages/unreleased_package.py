@@ -23,7 +23,7 @@ Not reported
     on the target, and packages with a known successor (renamed-package and removed-package say it).
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
 from ..text import Text
@@ -39,7 +39,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
         "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
     },
 )
-def unreleased_package(view: View):
+def unreleased_package(view: TargetView):
     target = view.target
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:

@@ -27,7 +27,7 @@ from bisect import bisect_left
 from functools import lru_cache
 
 from ...model.misspelling import is_slip, nearest
-from ...model.view import View
+from ...model.view import TargetView
 from ..fix_actions import Remove, Replace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -53,7 +53,7 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
         ),
     },
 )
-def unresolvable_key(view: View):
+def unresolvable_key(view: TargetView):
     target = view.target
     for package in view:
         seen = set()
@@ -83,7 +83,7 @@ def unresolvable_key(view: View):
                 yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
 
 
-def _parts_of(view: View, name: str) -> list[str]:
+def _parts_of(view: TargetView, name: str) -> list[str]:
     """Released packages that are called after a name, two at least: what the repository of that name holds."""
     if len(name) < 4:
         return []
@@ -99,7 +99,7 @@ def _in_order(names: frozenset[str]) -> list[str]:
     return sorted(names)
 
 
-def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
+def _fix(view: TargetView, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     """Writes the name that was surely meant, or takes the wrong one out where that is declared beside it."""
     if not view.available(guess) or not _slip(name, guess):
         return ()

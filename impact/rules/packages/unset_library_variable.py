@@ -26,7 +26,7 @@ import re
 from functools import lru_cache
 
 from ...model.cmake.names import MODULES
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import variables
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -56,14 +56,14 @@ _SET_ALONG = re.compile(
         ),
     },
 )
-def unset_library_variable(view: View):
+def unset_library_variable(view: TargetView):
     for package in view:
         if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
             yield from _list_unset(view, package)
             yield from _list_prefixes(package)
 
 
-def _list_unset(view: View, package):
+def _list_unset(view: TargetView, package):
     """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
     build = package.build
     if build.unresolved or any("$" in f.name for f in build.found):
@@ -93,7 +93,7 @@ def _list_unset(view: View, package):
         yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 
 
-def _doubts(view: View, package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
+def _doubts(view: TargetView, package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
     """What speaks against a linker that misses the library of an empty variable."""
     providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
     owners = {p.package or p.name for p in providers}
@@ -102,13 +102,13 @@ def _doubts(view: View, package, variable: str, module: str, stem: str) -> tuple
     return (Doubt.LUCKY,) if _brings(view, package, providers[0].package) else ()
 
 
-def _brings(view: View, package, library: str) -> bool:
+def _brings(view: TargetView, package, library: str) -> bool:
     """True where the package of another library that is found depends on this one's, so that it may pass it on."""
     found = {p.package for f in package.build.found for p in view.cmake(f.name)[:1] if p.kind == "system"}
     return any(library in view.apt.brought_by(name) for name in found - {library, ""})
 
 
-def _sets_others(view: View, package) -> bool:
+def _sets_others(view: TargetView, package) -> bool:
     """True where a library that is found may set variables of others: its configuration may look for what it needs,
     which CMake's own find modules leave to the caller."""
     return any(
@@ -120,7 +120,7 @@ def _sets_others(view: View, package) -> bool:
     )
 
 
-def _compiled_with(view: View, package, variable: str, stem: str, owners: set[str]) -> bool:
+def _compiled_with(view: TargetView, package, variable: str, stem: str, owners: set[str]) -> bool:
     """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
     headers."""
     for target in package.build.targets:

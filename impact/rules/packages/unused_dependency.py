@@ -20,7 +20,7 @@ Not reported
     Metapackages, build tools, message runtimes, `*_vendor` packages, dependencies of packages with unresolved CMake.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -54,7 +54,7 @@ _SILENT = (
         help="remove the dependency if it is not needed for another reason",
     ),
 )
-def unused_dependency(view: View):
+def unused_dependency(view: TargetView):
     for package in view:
         if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
             continue

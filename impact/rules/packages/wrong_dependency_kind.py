@@ -23,7 +23,7 @@ Not reported
     What another declared dependency brings as the right kind.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -44,7 +44,7 @@ _AS_DEPEND = "declare it as `<{tag}>`"
         "run, to build": Text("`{subject}` is needed to run but is declared only to build", _AS_DEPEND),
     },
 )
-def wrong_dependency_kind(view: View):
+def wrong_dependency_kind(view: TargetView):
     for package in view:
         for wrong in list_wrong_kinds(view, package):
             if wrong.lacking == "build":
@@ -53,7 +53,7 @@ def wrong_dependency_kind(view: View):
                 yield _diagnose_run(view, package, wrong)
 
 
-def _diagnose_build(view: View, package: Package, wrong: WrongKind) -> Diagnostic:
+def _diagnose_build(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:
     need, name, kinds, _ = wrong
     old = package.manifest.format == 1
     # rosdep installs run dependencies along, so only the order of a clean build suffers
@@ -67,7 +67,7 @@ def _diagnose_build(view: View, package: Package, wrong: WrongKind) -> Diagnosti
     return Diagnostic(need.at, name, package.name, data, kind, doubts, fix=fix)
 
 
-def _diagnose_run(view: View, package: Package, wrong: WrongKind) -> Diagnostic:
+def _diagnose_run(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:
     need, name, kinds, _ = wrong
     kind, doubt = ("for tests", Doubt.DISPENSABLE) if kinds == {"test"} else ("to build", Doubt.LATE)
     data = {"tag": "run_depend" if package.manifest.format == 1 else "exec_depend"}

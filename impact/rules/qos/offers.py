@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Pair, display_name, met
+from ...model.flow.edges import FlowPair, display_name, met
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace
 from ..rule import Diagnostic
@@ -18,7 +18,7 @@ from ..text import Text, Value
 _ROS1 = frozenset(("roscpp", "rospy"))
 
 
-def meetings(workspace: Workspace) -> Iterator[tuple[Pair, Qos, Qos]]:
+def meetings(workspace: Workspace) -> Iterator[tuple[FlowPair, Qos, Qos]]:
     """Publishers and subscribers of one topic, with what is offered and what is asked for. Where a node has several of
     the same name, it is not known which of them is used, and none is returned."""
     for pair in met(workspace):
@@ -41,7 +41,7 @@ def qos_text(asks: str, offers: str, help: str) -> Text:
     )
 
 
-def incompatible(pair: Pair, kind: str = "", **data: Value) -> Diagnostic:
+def incompatible(pair: FlowPair, kind: str = "", **data: Value) -> Diagnostic:
     """The diagnostic at a subscriber. Its data also has `node` and `place` of the publisher, and `launch`."""
     giver, taker = pair.giver.endpoint, pair.taker.endpoint
     data = {

@@ -34,7 +34,7 @@ Not reported
 from ...model.cmake.build import for_tests
 from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ..fix_actions import Insert
 from ..rule import Diagnostic, rule
@@ -55,7 +55,7 @@ _LOST = "`{name}` is used without `<{subject}>`, "
         ),
     },
 )
-def missing_include(view: View):
+def missing_include(view: TargetView):
     # Macros that a file of the workspace defines, maybe where nothing else does.
     defined = frozenset().union(*(package.digest.defined for package in view.workspace))
     for package in view:
@@ -109,7 +109,7 @@ class _Places:
         )
 
 
-def _include(view: View, package: Package, need: NeededHeader, header: str) -> tuple[Insert, ...]:
+def _include(view: TargetView, package: Package, need: NeededHeader, header: str) -> tuple[Insert, ...]:
     """The cure that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
     includes none outside of conditions."""
     standard = [

@@ -19,7 +19,7 @@ Not reported
     Versions that are not plain numbers, and platforms whose CMake is not known.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.version import at_least, compare
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -39,7 +39,7 @@ from ..text import Text
         ),
     },
 )
-def cmake_version(view: View):
+def cmake_version(view: TargetView):
     cmake = view.target.library("cmake")
     if not cmake:
         return

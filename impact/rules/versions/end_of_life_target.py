@@ -11,7 +11,7 @@ Severity
 """
 
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
@@ -21,7 +21,7 @@ from ..text import Text
     severity="note",
     texts=Text("{subject} reached its end of life on {date}", help="plan the move to a maintained distro"),
 )
-def end_of_life_target(view: View):
+def end_of_life_target(view: TargetView):
     ended = getattr(view.target, "end_of_life", "") or ""
     if ended and ended <= view.target.data_date:
         first = next(iter(view.workspace), None)

@@ -25,7 +25,7 @@ Not reported
 """
 
 from ...model.standards import find_standards, may_be_set_elsewhere
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
@@ -48,7 +48,7 @@ _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{n
         ),
     },
 )
-def language_standard(view: View):
+def language_standard(view: TargetView):
     default = default_standard(view.target)
     for package in view:
         if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.digest.includes:
@@ -59,7 +59,7 @@ def language_standard(view: View):
             yield from _ros2(view, package, default)
 
 
-def _ros1(view: View, package, default: int | None):
+def _ros1(view: TargetView, package, default: int | None):
     """What the package sets, else the compiler's default, against what is included."""
     fixed = view.standard(package)
     year = standard_year(fixed[0]) if fixed else default
@@ -92,7 +92,7 @@ def _ros1(view: View, package, default: int | None):
             yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", (known,))
 
 
-def _ros2(view: View, package, default: int | None):
+def _ros2(view: TargetView, package, default: int | None):
     """A -std= flag stands where the compiler's default is all that linked targets ask for."""
     fixed = view.standard(package)
     if not fixed or not package.build.standard_by_flag or default is None:

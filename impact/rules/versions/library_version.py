@@ -21,7 +21,7 @@ Not reported
     Requests beside another one for the same library that the platform satisfies; libraries whose version is not known.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.providers.library import satisfies
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -36,7 +36,7 @@ from ..text import Text
         help="ask for a version that all targets have, or for no version",
     ),
 )
-def library_version(view: View):
+def library_version(view: TargetView):
     for package in view:
         for found in package.build.found:
             if not found.version or not view.active(found.conditions) or found.name in view.workspace.packages:
@@ -60,7 +60,7 @@ def library_version(view: View):
             )
 
 
-def _holds(view: View, found) -> bool:
+def _holds(view: TargetView, found) -> bool:
     if not found.version:
         return True
     answer = satisfies(view.target, found.name, found.version, found.exact)

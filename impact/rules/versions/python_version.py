@@ -20,7 +20,7 @@ Use instead
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
 from ..rule import rule
@@ -41,7 +41,7 @@ from .python_files import Refused, report_refused
         ),
     },
 )
-def python_version(view: View):
+def python_version(view: TargetView):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         reported = set()
         for use in package.digest.syntax:

@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
 from ...targets.target import Target
@@ -43,7 +43,7 @@ from .python_files import Refused, report_refused
         "use its successor[[ `{replacement}`]], with an except branch if both versions must work",
     ),
 )
-def removed_python_module(view: View):
+def removed_python_module(view: TargetView):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for item in package.digest.imports:
             if not view.certain(item.conditions) or item.module.split(".")[0] in view.workspace.modules:

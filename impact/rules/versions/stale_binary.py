@@ -38,12 +38,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from ....edges.console import counted
 from ...model.build_order import build_order
 from ...model.cmake.build import At
-from ...model.view import View
+from ...model.view import TargetView
 from ..rule import Diagnostic, rule
 from ..text import Text
 
 if TYPE_CHECKING:
-    from ...model.install_space import Binary, Installed
+    from ...model.install_space import Binary, InstallSpace
     from ...targets.machine.shared_libraries import Shelf
 
 
@@ -77,7 +77,7 @@ _HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
         ),
     },
 )
-def stale_binary(view: View, installed: Installed, shelf: Shelf):
+def stale_binary(view: TargetView, installed: InstallSpace, shelf: Shelf):
     askers: dict[_Missing, dict[str, list[Binary]]] = {}
     for binary in installed.binaries:
         if shelf.machine and binary.elf.machine != shelf.machine:
@@ -98,7 +98,7 @@ def stale_binary(view: View, installed: Installed, shelf: Shelf):
             yield Diagnostic(at, missing.subject, package, data, kind)
 
 
-def _missing(view: View, binary: Binary, installed: Installed, shelf: Shelf) -> Iterator[_Missing]:
+def _missing(view: TargetView, binary: Binary, installed: InstallSpace, shelf: Shelf) -> Iterator[_Missing]:
     needed = [soname for soname in binary.elf.needed if soname not in installed.libraries]
     absent = set()
     for soname in needed:
@@ -134,7 +134,7 @@ def _remedy(missing: _Missing, packages: list[str], shelf: Shelf) -> dict[str, s
     return {"debian": shelf.package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
 
 
-def _place(view: View, package: str, binaries: list[Binary], installed: Installed) -> At:
+def _place(view: TargetView, package: str, binaries: list[Binary], installed: InstallSpace) -> At:
     """The package's manifest; of a package that is not in the workspace, the first file itself."""
     known = view.workspace.packages.get(package)
     if known is not None:

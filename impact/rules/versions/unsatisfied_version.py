@@ -21,7 +21,7 @@ Not reported
     Bounds on packages whose version on the target is not known, and under a condition that does not hold there.
 """
 
-from ...model.view import View
+from ...model.view import TargetView
 from ...targets.version import compare
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -45,7 +45,7 @@ _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte
         help="relax the bound, or update that target",
     ),
 )
-def unsatisfied_version(view: View):
+def unsatisfied_version(view: TargetView):
     for package in view:
         seen = set()
         for dependency in package.manifest.dependencies:

@@ -20,7 +20,7 @@ from ....edges.console import UserError
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
-from ..target import Change, ChangeTable, ReleasedDependency, Resolution, Target
+from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
 from ..version import number_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros
 from .rosdep import decode_rule, resolve_rule, split_platform
@@ -647,7 +647,7 @@ class DistroTarget(Target):
             self._changes = _tables.get(self.identity())
         return self._changes is not None
 
-    def set_changes(self, changes: tuple[Change, ...]) -> None:
+    def set_changes(self, changes: tuple[ChangeInForce, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
         self._changes = ChangeTable(changes)
         if self._data is snapshots.default():

@@ -26,7 +26,7 @@ class DistroFacts(msgspec.Struct, frozen=True):
     libraries: dict[str, str] = {}
 
 
-class Known(NamedTuple):
+class KnownDistro(NamedTuple):
     """One distro of the snapshot in brief: first_day and last_day bound the releases known."""
 
     name: str
@@ -40,13 +40,13 @@ class Known(NamedTuple):
     last_day: str
 
 
-def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
+def known_distros(data: Snapshot | None = None) -> tuple[KnownDistro, ...]:
     """All distros of the snapshot, oldest first."""
     return _known_distros(data or snapshots.default())
 
 
 @functools.lru_cache(maxsize=4)
-def _known_distros(data: Snapshot) -> tuple[Known, ...]:
+def _known_distros(data: Snapshot) -> tuple[KnownDistro, ...]:
     facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
     found = []
     for name, ros, python, status, first, last in data.rows(
@@ -55,7 +55,7 @@ def _known_distros(data: Snapshot) -> tuple[Known, ...]:
     ):
         fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
         found.append(
-            Known(
+            KnownDistro(
                 name,
                 ros,
                 python,

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 from ...facts import elf
-from ...facts.elf import Asked, Elf, stem_and_version
+from ...facts.elf import AskedSymbolVersions, Elf, stem_and_version
 from ..target import Target
 from ..version import compare
 from .loader import Loader
@@ -63,7 +63,7 @@ class Shelf(Protocol):
         """The Debian package of a library that is not installed and can be; empty where none is known."""
         ...
 
-    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
         ...
 
@@ -100,7 +100,7 @@ class MachineShelf:
     def package(self, soname: str) -> str:
         return self._sonames.package(soname) if self._sonames.has(self.platform, soname) else ""
 
-    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         path = self._loader.find(asked.library, asker, folder)
         offers = self._loader.offers(path) if path else frozenset()
         if not offers:
@@ -168,7 +168,7 @@ class DescribedShelf:
     def package(self, soname: str) -> str:
         return ""
 
-    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         found = []
         for name in asked.versions:
             kind, _, version = name.partition("_")

@@ -20,7 +20,7 @@ from ..version import number_of
 FILE = "sonames.json.zst"
 
 
-class Table(msgspec.Struct, frozen=True):
+class SonamesTable(msgspec.Struct, frozen=True):
     """As stored. platforms: their names. symbols: how far the versions of symbols of each reach, by kind. names: a
     line for each library: name, platforms that have it as bits, a package that has it."""
 
@@ -47,7 +47,7 @@ class Reviewed(msgspec.Struct, frozen=True):
 class Sonames:
     """The table, ready to be asked."""
 
-    def __init__(self, table: Table, reviewed: Reviewed):
+    def __init__(self, table: SonamesTable, reviewed: Reviewed):
         self._bit = {platform: 1 << place for place, platform in enumerate(table.platforms)}
         self._symbols = dict(zip(table.platforms, table.symbols, strict=True))
         self.reviewed = reviewed
@@ -125,7 +125,7 @@ def default_sonames(data: Path = DATA) -> Sonames:
     path = data / FILE
     try:
         raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        table = msgspec.json.decode(raw, type=Table)
+        table = msgspec.json.decode(raw, type=SonamesTable)
         reviewed = msgspec.convert(yaml.safe_load((data / "sonames.yaml").read_bytes()), type=Reviewed)
         return Sonames(table, reviewed)
     except (OSError, zstandard.ZstdError, msgspec.MsgspecError, ValueError) as error:

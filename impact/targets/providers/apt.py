@@ -14,7 +14,7 @@ INFERRED = 1 << 15
 """Bit of a relation that was read off the lists of files of Ubuntu's suites instead of a package's own dependencies."""
 
 
-class Graph(msgspec.Struct, frozen=True, array_like=True):
+class AptGraph(msgspec.Struct, frozen=True, array_like=True):
     """suites: platforms (`debian bookworm`) whose indices were read. packages: their names, sorted; the rest is places
     in this list. base: what every machine that builds has. brings: package to (package, bits of the suites where it
     comes along with the first one)."""
@@ -29,7 +29,7 @@ class Apt:
     """The graph as one platform sees it. Of a platform whose index was not read, all that any other suite brings
     counts: such an answer may say that something is there, and never that it is missing."""
 
-    def __init__(self, graph: Graph, platform: str):
+    def __init__(self, graph: AptGraph, platform: str):
         self._graph = graph
         self._place = {name: place for place, name in enumerate(graph.packages)}
         self._inferred = platform not in graph.suites
@@ -73,12 +73,12 @@ class Apt:
 
 
 @cache
-def _graph(data: Path) -> Graph:
+def _graph(data: Path) -> AptGraph:
     import zstandard
 
     path = data / "apt.json.zst"
     try:
-        return msgspec.json.decode(zstandard.ZstdDecompressor().decompress(path.read_bytes()), type=Graph)
+        return msgspec.json.decode(zstandard.ZstdDecompressor().decompress(path.read_bytes()), type=AptGraph)
     except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ..target import Target
 
 
-class Table(msgspec.Struct, frozen=True):
+class IncludesTable(msgspec.Struct, frozen=True):
     """The shipped table. paths: include paths, whose places stand for them. owners: owner to header to its states, as
     `VERSION PLACE PLACE ...;VERSION -;...`: from that version on, and `-` where there is no such header. libraries:
     owners that are platform libraries. sparse: owners of which not every version was read, to those that were. names:
@@ -51,7 +51,7 @@ _State = tuple[tuple[int, ...], tuple[str, ...] | None]
 class Includes:
     """A table, asked by header and version."""
 
-    def __init__(self, table: Table):
+    def __init__(self, table: IncludesTable):
         self.table = table
         self.owners_of: dict[str, tuple[str, ...]] = {}
         for owner, headers in table.owners.items():
@@ -101,7 +101,7 @@ def default() -> Includes:
     path = DATA / "includes.json.zst"
     try:
         raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return Includes(msgspec.json.decode(raw, type=Table))
+        return Includes(msgspec.json.decode(raw, type=IncludesTable))
     except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 
@@ -153,7 +153,7 @@ class _Found(NamedTuple):
     includes: tuple[str, ...]
 
 
-class Machine:
+class HeadersOfMachine:
     """The headers of one machine, each answer kept. ros: 1 or 2. version: owner and whether it is a platform library to
     its version. surfaces: what its ROS packages offer, by default the shipped file."""
 
@@ -440,13 +440,13 @@ class Machine:
         return self._reach.bits(headers)
 
 
-def machine(target: Target) -> Machine:
+def machine(target: Target) -> HeadersOfMachine:
     """The headers that a target has."""
-    return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+    return HeadersOfMachine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
 
 
 @cache
-def machine_of(distro: str, ros: int, data: Includes | None = None) -> Machine:
+def machine_of(distro: str, ros: int, data: Includes | None = None) -> HeadersOfMachine:
     """A distro as it was in the end."""
     known = data or default()
     versions = known.table.versions.get(distro, {})
@@ -454,7 +454,7 @@ def machine_of(distro: str, ros: int, data: Includes | None = None) -> Machine:
     def version(owner: str, library: bool) -> str | None:
         return versions.get(owner) or (None if library else _packages_of(distro).version(owner))
 
-    return Machine(ros, version, known)
+    return HeadersOfMachine(ros, version, known)
 
 
 @cache

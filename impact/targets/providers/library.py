@@ -152,7 +152,7 @@ def gone_component(target: Target, package: str, component: str) -> Gone | None:
     return None
 
 
-class Answer(NamedTuple):
+class VersionAnswer(NamedTuple):
     """Whether a version request holds, and the version that is there."""
 
     holds: bool
@@ -184,7 +184,7 @@ _LIBRARY_OF = {
 _SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
 
 
-def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer | None:
+def satisfies(target: Target, package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
     name = _LIBRARY_OF.get(package)
     if name is None:
@@ -196,7 +196,7 @@ def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer
         return None  # ROS kinetic brings OpenCV 3 beside the platform's 2
     low, _, high = request.partition("...")
     if exact:
-        return Answer(parts(version)[: len(parts(low))] == parts(low), version)
+        return VersionAnswer(parts(version)[: len(parts(low))] == parts(low), version)
     holds = at_least(version, low)
     if holds and high:
         bound = high.lstrip("<")
@@ -207,7 +207,7 @@ def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer
         )
     elif holds and package in _SAME_MAJOR:
         holds = parts(version)[:1] == parts(low)[:1]
-    return Answer(holds, version)
+    return VersionAnswer(holds, version)
 
 
 class NeededStandard(NamedTuple):

@@ -233,7 +233,7 @@ def _table(gcc: int) -> dict[str, frozenset[str]]:
     }
 
 
-class Names(msgspec.Struct, frozen=True):
+class StandardNames(msgspec.Struct, frozen=True):
     """The shipped table. names: each with the header that is its own, whose places stand for them. gcc: major version
     to C++ standard to header to the names that it brings, as a hexadecimal number with a bit for each."""
 
@@ -242,14 +242,14 @@ class Names(msgspec.Struct, frozen=True):
 
 
 @cache
-def names() -> Names:
+def names() -> StandardNames:
     """The names that are told of. Raises SnapshotError when the data cannot be read."""
     import zstandard
 
     path = DATA / "std_names.json.zst"
     try:
         raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return msgspec.json.decode(raw, type=Names)
+        return msgspec.json.decode(raw, type=StandardNames)
     except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Callable, Iterable, Iterator
 
-from .python import Change
+from .python import PythonChange
 from .surface import BuildSurface
 
 
-def compare(old: BuildSurface, new: BuildSurface) -> tuple[Change, ...]:
+def compare(old: BuildSurface, new: BuildSurface) -> tuple[PythonChange, ...]:
     """What changed for those who build on the package or start it, part by part, each sorted by name.
 
     A thing that is gone is not `sure` where it hung on a condition, or where the new version has things of its part
     that cannot be told and that the old one did not have.
     """
-    found: list[Change] = []
+    found: list[PythonChange] = []
     for what, part, things in _PARTS:
         had, has = things(old), things(new)
         open_ended = any(where == part and (where, why) not in old.unknown for where, why in new.unknown)
@@ -25,14 +25,16 @@ def compare(old: BuildSurface, new: BuildSurface) -> tuple[Change, ...]:
             if name not in has:
                 target = _successor(what, name, fresh)
                 kind = "moved" if target else "removed"
-                found.append(Change(kind, name, what, shown, target, True, sure and not open_ended))
+                found.append(PythonChange(kind, name, what, shown, target, True, sure and not open_ended))
             elif what == "plugin" and shown != has[name][0]:
-                found.append(Change("signature", name, what, shown, has[name][0], True, sure and has[name][1]))
+                found.append(PythonChange("signature", name, what, shown, has[name][0], True, sure and has[name][1]))
         fresh -= {change.now for change in found if change.kind == "moved" and change.what == what}
-        found += [Change("added", name, what, "", has[name][0], False, has[name][1]) for name in sorted(fresh)]
+        found += [PythonChange("added", name, what, "", has[name][0], False, has[name][1]) for name in sorted(fresh)]
     if old.standard != new.standard:
         now = str(new.standard or "")
-        found.append(Change("signature", "C++", "standard", str(old.standard or ""), now, new.standard > old.standard))
+        found.append(
+            PythonChange("signature", "C++", "standard", str(old.standard or ""), now, new.standard > old.standard)
+        )
     return (*found, *_arguments(old, new))
 
 
@@ -50,7 +52,7 @@ def _successor(what: str, name: str, fresh: Iterable[str]) -> str:
     return same[0] if len(same) == 1 else ""
 
 
-def _arguments(old: BuildSurface, new: BuildSurface) -> Iterator[Change]:
+def _arguments(old: BuildSurface, new: BuildSurface) -> Iterator[PythonChange]:
     has = {launch.path: dict(launch.arguments) for launch in new.launches}
     for launch in old.launches:
         now = has.get(launch.path)
@@ -59,15 +61,15 @@ def _arguments(old: BuildSurface, new: BuildSurface) -> Iterator[Change]:
         for name, default in launch.arguments:
             at = f"{launch.path} {name}"
             if name not in now:
-                yield Change("removed", at, "launch argument", default or "")
+                yield PythonChange("removed", at, "launch argument", default or "")
             elif now[name] is None and default is not None:
-                yield Change("signature", at, "launch argument", default, "must be given")
+                yield PythonChange("signature", at, "launch argument", default, "must be given")
             elif now[name] != default and "?" not in (now[name], default):
-                yield Change("default", at, "launch argument", default or "", now[name] or "", False)
+                yield PythonChange("default", at, "launch argument", default or "", now[name] or "", False)
         for name, default in now.items():
             if name not in dict(launch.arguments):
                 at = f"{launch.path} {name}"
-                yield Change("added", at, "launch argument", "", default or "", default is None)
+                yield PythonChange("added", at, "launch argument", "", default or "", default is None)
 
 
 _PARTS: tuple[tuple[str, str, Callable[[BuildSurface], dict[str, tuple[str, bool]]]], ...] = (

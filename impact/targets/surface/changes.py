@@ -38,7 +38,7 @@ class Form(msgspec.Struct, frozen=True, array_like=True, gc=False):
     deprecated: str | None = None
 
 
-class Told(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ComparedThing(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the comparison told of a thing, as in surface.Change, without what the line of versions tells as well. now:
     the message of a deprecation, a value or a default; declarations are in the surfaces."""
 
@@ -52,12 +52,12 @@ class Told(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: float = 1.0
 
 
-class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ChangeEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A thing changed. place: of the first version that has it so, in the line of versions. had, has: its form before
     and since; None where it is not there, or where forms say nothing."""
 
     place: int
-    told: tuple[Told, ...]
+    told: tuple[ComparedThing, ...]
     had: Form | None
     has: Form | None
 
@@ -69,7 +69,7 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
     bases, in the newest version. approximate: versions that a branch stands for."""
 
     versions: tuple[str, ...]
-    events: dict[str, dict[str, tuple[Event, ...]]]
+    events: dict[str, dict[str, tuple[ChangeEvent, ...]]]
     bases: dict[str, tuple[str, ...]] = {}
     approximate: tuple[str, ...] = ()
 

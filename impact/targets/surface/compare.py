@@ -18,11 +18,11 @@ from . import diff as surface_diff
 from . import python as surface_python
 from .changes import PARAMETER
 from .fields import snake
-from .python import UNKNOWN, Names
+from .python import UNKNOWN, SurfaceNames
 from .surface import BuildSurface, PythonSurface, Surface
 
 
-class Place(NamedTuple):
+class EntityPlace(NamedTuple):
     """Where an entity stands."""
 
     package: str
@@ -30,24 +30,24 @@ class Place(NamedTuple):
     entity: Entity
 
 
-class State:
+class RepositorySurfaces:
     """The surfaces of all packages of one repository state, ready to be asked across packages."""
 
     def __init__(self, surfaces: Mapping[str, Surface]):
         self.surfaces = surfaces
-        self._python: dict[str, Names] = {}
+        self._python: dict[str, SurfaceNames] = {}
         self._mentioned: dict[str, frozenset[str] | None] = {}
 
     @cached_property
-    def cpp(self) -> dict[str, list[Place]]:
+    def cpp(self) -> dict[str, list[EntityPlace]]:
         """Entities by name, as users write it."""
-        found: dict[str, list[Place]] = defaultdict(list)
+        found: dict[str, list[EntityPlace]] = defaultdict(list)
         for surface in self.surfaces.values():
             every = [header for _, header in surface.headers]
             inline = tuple(dict.fromkeys(name for header in every for name in header.inline))
             for path, header in surface.headers:
                 for entity in offered([msgspec.structs.replace(header, inline=inline)]):
-                    found[entity.name].append(Place(surface.package, path, entity))
+                    found[entity.name].append(EntityPlace(surface.package, path, entity))
         return found
 
     @cached_property
@@ -88,11 +88,11 @@ class State:
             self._mentioned[package] = None if found is None else frozenset(found)
         return self._mentioned[package]
 
-    def python(self, package: str) -> Names:
+    def python(self, package: str) -> SurfaceNames:
         """The Python names of a package."""
         known = self._python.get(package)
         if known is None:
-            known = self._python[package] = Names(self.surfaces[package].python)
+            known = self._python[package] = SurfaceNames(self.surfaces[package].python)
         return known
 
     def includes(self, header: str) -> set[str]:
@@ -156,7 +156,7 @@ class State:
                 yield "::".join([*parts[:length], space.removeprefix("::")])
 
 
-class Change(msgspec.Struct, frozen=True, gc=False):
+class VersionChange(msgspec.Struct, frozen=True, gc=False):
     """One difference between two versions of a package.
 
     side: `c++`, `python`, `message` or `build` (CMake, headers, programs, plugins, launch files).
@@ -190,11 +190,13 @@ CONDITIONAL = 0.7
 """How sure a change is of something that stands under a condition of the preprocessor."""
 
 
-def compare(old: Surface, new: Surface, before: State | None = None, after: State | None = None) -> tuple[Change, ...]:
+def compare(
+    old: Surface, new: Surface, before: RepositorySurfaces | None = None, after: RepositorySurfaces | None = None
+) -> tuple[VersionChange, ...]:
     """What changed in a package. before, after: the repository states that the versions belong to, so that what went
     to another package, or into a base class there, is not taken for gone."""
-    before = before or State({old.package: old})
-    after = after or State({new.package: new})
+    before = before or RepositorySurfaces({old.package: old})
+    after = after or RepositorySurfaces({new.package: new})
     changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
     found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
@@ -203,24 +205,24 @@ def compare(old: Surface, new: Surface, before: State | None = None, after: Stat
     return tuple(dict.fromkeys(sorted(found, key=lambda c: (order[c.side], c.what != "header", c.name, c.kind, c.old))))
 
 
-def compare_states(before: State, after: State) -> dict[str, tuple[Change, ...]]:
+def compare_states(before: RepositorySurfaces, after: RepositorySurfaces) -> dict[str, tuple[VersionChange, ...]]:
     """What changed in each package of a repository. A package that is new is one change; of one
     that is gone it is told where what it had is now."""
-    found: dict[str, tuple[Change, ...]] = {}
+    found: dict[str, tuple[VersionChange, ...]] = {}
     for name in sorted({*before.surfaces, *after.surfaces}):
         if name not in after.surfaces:
             old, empty = before.surfaces[name], Surface(name, "", BuildSurface(name), PythonSurface(name))
-            gone = Change(name, "build", "removed", "package", name, old=old.version)
+            gone = VersionChange(name, "build", "removed", "package", name, old=old.version)
             found[name] = (gone, *compare(old, empty, before, after))
         elif name not in before.surfaces:
             version = after.surfaces[name].version
-            found[name] = (Change(name, "build", "added", "package", name, now=version, breaks=False),)
+            found[name] = (VersionChange(name, "build", "added", "package", name, now=version, breaks=False),)
         else:
             found[name] = compare(before.surfaces[name], after.surfaces[name], before, after)
     return found
 
 
-def _reaches(new: Surface, package: str, after: State) -> bool:
+def _reaches(new: Surface, package: str, after: RepositorySurfaces) -> bool:
     """Whether whoever uses a package also gets another one through it."""
     seen: set[str] = set()
     todo = [new.package]
@@ -266,8 +268,8 @@ def _request(stem: str, surface: Surface) -> bool:
 
 
 def _headers_changed(
-    old: Surface, new: Surface, after: State, changes: Sequence[surface_diff.Change]
-) -> Iterator[Change]:
+    old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[surface_diff.CppChange]
+) -> Iterator[VersionChange]:
     had, has = _all_headers(old), _all_headers(new)
     open_ended = _open_ended(old, new)
     surfaces, news = dict(old.headers), dict(new.headers)
@@ -280,21 +282,23 @@ def _headers_changed(
         elsewhere = after.headers.get(path)
         if elsewhere is not None:
             if not _reaches(new, elsewhere[0], after):
-                yield Change(old.package, "c++", "moved", "header", path, moved_to=elsewhere[0], where=path, sure=sure)
+                yield VersionChange(
+                    old.package, "c++", "moved", "header", path, moved_to=elsewhere[0], where=path, sure=sure
+                )
             continue
         surface = surfaces.get(path)
         instead = surface.instead if surface is not None and surface.instead in after.headers else ""
         instead = instead or next((there for there, _ in moves[path].most_common(1)), "") or _successor(path, had, has)
-        yield Change(old.package, "c++", "removed", "header", path, instead=instead, where=path, sure=sure)
+        yield VersionChange(old.package, "c++", "removed", "header", path, instead=instead, where=path, sure=sure)
     for path in sorted(has.keys() - had.keys()):
-        yield Change(
+        yield VersionChange(
             old.package, "c++", "added", "header", path, where=path, breaks=False, sure=1.0 if has[path] else OPEN
         )
     for path in sorted(surfaces.keys() & news.keys()):
         message = news[path].deprecated
         if surfaces[path].deprecated is None and message is not None:
             instead = news[path].instead
-            yield Change(
+            yield VersionChange(
                 old.package, "c++", "deprecated", "header", path, now=message, instead=instead, where=path, breaks=False
             )
 
@@ -316,8 +320,12 @@ def _successor(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> s
 
 
 def _cpp(
-    old: Surface, new: Surface, before: State, after: State, changes: Sequence[surface_diff.Change]
-) -> Iterator[Change]:
+    old: Surface,
+    new: Surface,
+    before: RepositorySurfaces,
+    after: RepositorySurfaces,
+    changes: Sequence[surface_diff.CppChange],
+) -> Iterator[VersionChange]:
     hints = {change.name: change for change in changes if change.kind == "renamed"}
     broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
     lost = {path for path, header in new.headers if header.lost or header.problems}
@@ -336,7 +344,7 @@ def _cpp(
             sure = CONDITIONAL
         if (open_ended and change.old_header not in has) or change.old_header in lost:
             sure = min(sure, OPEN)
-        told = Change(
+        told = VersionChange(
             old.package,
             "c++",
             change.kind,
@@ -367,8 +375,13 @@ def _cpp(
 
 
 def _gone(
-    told: Change, change: surface_diff.Change, old: Surface, new: Surface, before: State, after: State
-) -> Change | None:
+    told: VersionChange,
+    change: surface_diff.CppChange,
+    old: Surface,
+    new: Surface,
+    before: RepositorySurfaces,
+    after: RepositorySurfaces,
+) -> VersionChange | None:
     """A removal as it is for users: None where the name can still be written and means the same."""
     one = change.old
     assert one is not None
@@ -413,11 +426,11 @@ def _gone(
     return told
 
 
-def _python(old: Surface, new: Surface, after: State) -> Iterator[Change]:
+def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     for change in surface_python.compare(old.python, new.python):
         sure = 1.0 if change.sure else OPEN
         instead = change.now if change.kind == "moved" else ""
-        told = Change(
+        told = VersionChange(
             old.package,
             "python",
             change.kind,
@@ -438,7 +451,7 @@ def _python(old: Surface, new: Surface, after: State) -> Iterator[Change]:
         yield told
 
 
-def _python_home(name: str, new: Surface, after: State) -> str:
+def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
     """Another package of the state that gives the name; `?` where that cannot be told."""
     top = name.partition(".")[0]
     for package, surface in after.surfaces.items():
@@ -457,11 +470,11 @@ def _runs_with(new: Surface, package: str) -> bool:
     return package in new.runs_with
 
 
-def _messages(old: Surface, new: Surface, after: State) -> Iterator[Change]:
+def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     had, has = dict(old.interfaces), dict(new.interfaces)
 
-    def told(kind: str, what: str, name: str, **more: Any) -> Change:
-        return Change(old.package, "message", kind, what, f"{old.package}/{name}", **more)
+    def told(kind: str, what: str, name: str, **more: Any) -> VersionChange:
+        return VersionChange(old.package, "message", kind, what, f"{old.package}/{name}", **more)
 
     for name in sorted(had.keys() - has.keys()):
         homes = [p for p, s in after.surfaces.items() if p != new.package and name in dict(s.interfaces)]
@@ -526,7 +539,7 @@ def _type(field: Field, package: str) -> str:
     return f"{plain if plain in PRIMITIVES else full_name(plain, package)}{bound}{limit}{field.array}"
 
 
-def _build(old: Surface, new: Surface, after: State) -> Iterator[Change]:
+def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     for change in surface_build.compare(old.build, new.build):
         if change.what == "header":
             continue  # told with what is in them
@@ -542,7 +555,7 @@ def _build(old: Surface, new: Surface, after: State) -> Iterator[Change]:
         breaks = change.breaks and not (moved_to and change.what == "plugin")
         # What a package needs for itself is no promise; that it is passed on is.
         sure = 1.0 if change.sure else OPEN
-        yield Change(
+        yield VersionChange(
             old.package,
             "build",
             kind,
@@ -559,11 +572,13 @@ def _build(old: Surface, new: Surface, after: State) -> Iterator[Change]:
         )
 
 
-def _parameters_changed(old: Surface, new: Surface, before: State, after: State) -> Iterator[Change]:
+def _parameters_changed(
+    old: Surface, new: Surface, before: RepositorySurfaces, after: RepositorySurfaces
+) -> Iterator[VersionChange]:
     had, has = dict(old.parameters), dict(new.parameters)
 
-    def change(kind: str, name: str, default: str | None, now: str | None, sure: float) -> Change:
-        return Change(old.package, "build", kind, PARAMETER, name, default or "", now or "", (), "", "", "",
+    def change(kind: str, name: str, default: str | None, now: str | None, sure: float) -> VersionChange:
+        return VersionChange(old.package, "build", kind, PARAMETER, name, default or "", now or "", (), "", "", "",
                       kind == "removed", sure)  # fmt: skip
 
     # A name that is still mentioned, or was before, may be declared in a way that is not read.

@@ -8,10 +8,10 @@ from difflib import SequenceMatcher
 
 import msgspec
 
-from ...facts.surface import CLASSES, FUNCTIONS, Argument, Entity, HeaderSurface, plain
+from ...facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
 
 
-class Change(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One difference. name: of the entity, or the path of a header.
 
     | kind | holds |
@@ -49,7 +49,7 @@ _SIMILAR = 0.6
 """Names less alike than this are no hint; the figure of difflib.SequenceMatcher.ratio()."""
 
 
-def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> tuple[Change, ...]:
+def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> tuple[CppChange, ...]:
     """The differences between the headers of two versions of a package, by their paths as they are included. Sorted by
     name; nothing for what only moved its line, changed its spacing or the names of its parameters."""
     changes = list(_headers(old, new))
@@ -73,12 +73,12 @@ def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) 
     changes += _renamed(gone, come)
     for path, one in gone:
         if _owner(one.name) not in lost:
-            changes.append(Change("removed", one.name, one, None, path, "", (), _implicit(one)))
+            changes.append(CppChange("removed", one.name, one, None, path, "", (), _implicit(one)))
     for path, one in come:
         if _owner(one.name) in found:
             continue
         if one.name not in known_before:
-            changes.append(Change("added", one.name, None, one, "", path, compatible="pure" not in one.traits))
+            changes.append(CppChange("added", one.name, None, one, "", path, compatible="pure" not in one.traits))
     moved = {change.name for change in changes if change.kind == "moved"}
     return tuple(
         sorted(
@@ -107,14 +107,14 @@ def _copies(one: Entity) -> bool:
     )
 
 
-def _headers(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> Iterable[Change]:
+def _headers(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> Iterable[CppChange]:
     for path in sorted(old.keys() - new.keys()):
-        yield Change("header removed", path, old_header=path, new_header=old[path].instead)
+        yield CppChange("header removed", path, old_header=path, new_header=old[path].instead)
     for path in sorted(new.keys() - old.keys()):
-        yield Change("header added", path, new_header=path, compatible=True)
+        yield CppChange("header added", path, new_header=path, compatible=True)
     for path in sorted(old.keys() & new.keys()):
         if old[path].deprecated is None and new[path].deprecated is not None:
-            yield Change("header deprecated", path, old_header=path, new_header=new[path].instead, compatible=True)
+            yield CppChange("header deprecated", path, old_header=path, new_header=new[path].instead, compatible=True)
 
 
 def _offered(headers: Mapping[str, HeaderSurface]) -> dict[tuple[str, str], list[_Placed]]:
@@ -184,17 +184,19 @@ def _template(one: Entity) -> tuple[tuple[str, str, bool], ...]:
     return tuple((parameter.kind, parameter.type, parameter.pack) for parameter in one.template or ())
 
 
-def _other_kind(olds: Sequence[_Placed], name: str, after: Mapping[tuple[str, str], list[_Placed]]) -> Iterable[Change]:
+def _other_kind(
+    olds: Sequence[_Placed], name: str, after: Mapping[tuple[str, str], list[_Placed]]
+) -> Iterable[CppChange]:
     path, one = olds[0]
     there, other = next(placed[0] for (_, offered), placed in after.items() if offered == name)
-    yield Change("signature", name, one, other, path, there, ("kind",), other.kind in ("using", "alias"))
+    yield CppChange("signature", name, one, other, path, there, ("kind",), other.kind in ("using", "alias"))
 
 
-def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]:
+def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChange]:
     """Differences of the entities of one name, overloads paired."""
     if len(olds) == len(news) and all(map(_as_before, olds, news)):
         return []
-    changes: list[Change] = []
+    changes: list[CppChange] = []
     old_paths, new_paths = {path for path, _ in olds}, {path for path, _ in news}
     left = _distinct(news)
     unpaired: list[_Placed] = []
@@ -229,13 +231,13 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]
     for path, one in removed:
         # an overload that another one takes over is no loss
         taken = _copies(one) or ("virtual" not in one.traits and still_callable(one, [other for _, other in news]))
-        changes.append(Change("removed", one.name, one, None, path, "", ("overload",), taken))
+        changes.append(CppChange("removed", one.name, one, None, path, "", ("overload",), taken))
     for path, one in added:
-        changes.append(Change("added", one.name, None, one, "", path, ("overload",), "pure" not in one.traits))
+        changes.append(CppChange("added", one.name, None, one, "", path, ("overload",), "pure" not in one.traits))
     if not old_paths & new_paths:
         path, one = olds[0]
         there, other = news[0]
-        changes.append(Change("moved", one.name, one, other, path, there))
+        changes.append(CppChange("moved", one.name, one, other, path, there))
     return changes
 
 
@@ -252,12 +254,12 @@ def _unlike(one: Entity, other: Entity) -> float:
     return 1 - ratio + 0.1 * (one.type != other.type) + 0.1 * (("const" in one.traits) != ("const" in other.traits))
 
 
-def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[Entity]) -> list[Change]:
+def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[Entity]) -> list[CppChange]:
     """Differences of two entities; offered: all of that name in the new version."""
-    changes: list[Change] = []
+    changes: list[CppChange] = []
 
     def told(kind: str, compatible: bool, *what: str) -> None:
-        changes.append(Change(kind, one.name, one, other, path, there, what, compatible))
+        changes.append(CppChange(kind, one.name, one, other, path, there, what, compatible))
 
     if one.deprecated is None and other.deprecated is not None:
         told("deprecated", True)
@@ -343,7 +345,7 @@ def still_callable(one: Entity, offered: Sequence[Entity]) -> bool:
     return all(any(_accepts(one, mine[:count], other) for other in offered) for count in range(least, len(mine) + 1))
 
 
-def _accepts(one: Entity, given: Sequence[Argument], other: Entity) -> bool:
+def _accepts(one: Entity, given: Sequence[CppParameter], other: Entity) -> bool:
     """Whether what is given to one function can be given to another instead."""
     taken = other.parameters or ()
     if "deleted" in other.traits or _family(other) != "function":
@@ -363,7 +365,7 @@ def _accepts(one: Entity, given: Sequence[Argument], other: Entity) -> bool:
     return all(parameter.default is not None or parameter.pack for parameter in taken[len(given) :])
 
 
-def _takes(given: Argument, taken: Argument) -> bool:
+def _takes(given: CppParameter, taken: CppParameter) -> bool:
     """Whether what could be given to a parameter of one type can be given to one of another."""
     if given.type == taken.type:
         return True
@@ -374,7 +376,7 @@ def _takes(given: Argument, taken: Argument) -> bool:
     return mine == f"const {theirs}&"
 
 
-def _defaults(mine: Sequence[Argument] | None, theirs: Sequence[Argument] | None) -> bool:
+def _defaults(mine: Sequence[CppParameter] | None, theirs: Sequence[CppParameter] | None) -> bool:
     return any(
         one.default is not None and one.default != other.default and one.type == other.type
         for one, other in zip(mine or (), theirs or (), strict=False)
@@ -388,7 +390,7 @@ def _template_defaults(one: Entity, other: Entity) -> bool:
     )
 
 
-def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[Change]:
+def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[CppChange]:
     """Hints: what is gone and what has come with a near name in the same scope, or with the same name in another one,
     and otherwise alike. Each of them is in one hint at most, the surest."""
     members_gone, members_come = _members(gone), _members(come)
@@ -410,7 +412,7 @@ def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[Change]:
             sure = _likeness(one, other, members_gone, members_come)
             if sure >= _SIMILAR:
                 hints.append((-sure, gone[first][0] != come[second][0], first, second))
-    changes: list[Change] = []
+    changes: list[CppChange] = []
     used_old: set[int] = set()
     used_new: set[int] = set()
     for less, _, first, second in sorted(hints):  # of what is equally alike, that in the same header
@@ -419,7 +421,7 @@ def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[Change]:
         used_old.add(first)
         used_new.add(second)
         (path, one), (there, other) = gone[first], come[second]
-        changes.append(Change("renamed", one.name, one, other, path, there, (), False, round(-less, 2)))
+        changes.append(CppChange("renamed", one.name, one, other, path, there, (), False, round(-less, 2)))
     return changes
 
 

@@ -25,7 +25,7 @@ from ..snapshot import DATA, SnapshotError
 from ..version import at_least, parts
 
 
-class Member(NamedTuple):
+class FieldMember(NamedTuple):
     """A field or constant of one section. nested: `package/Type` where it is an interface; array: it holds several of
     them. spans: the first and last states that have it (-1: to the end). successor: what stands for it since."""
 
@@ -40,10 +40,10 @@ class Member(NamedTuple):
 class Definition:
     """All that an interface ever was. sections: section to member name to what it was in some states each."""
 
-    def __init__(self, spans: tuple[tuple[int, int], ...], sections: dict[str, dict[str, list[Member]]]):
+    def __init__(self, spans: tuple[tuple[int, int], ...], sections: dict[str, dict[str, list[FieldMember]]]):
         self.spans, self.sections = spans, sections
 
-    def members(self, section: str, name: str) -> list[Member]:
+    def members(self, section: str, name: str) -> list[FieldMember]:
         return self.sections.get(section, {}).get(name, [])
 
     @cached_property
@@ -65,7 +65,7 @@ class Definition:
 _MEMBER = re.compile(r"(\w+)(!)?(?::([\w/]+))?(\*)?(?:@([\d,-]+))?(?:>(\w+))?")
 
 
-class History:
+class FieldsHistory:
     """All versions of one package in one ROS generation that were read."""
 
     def __init__(self, text: str):
@@ -118,7 +118,7 @@ class History:
         known = self._definitions.get(interface)
         if known is None and interface in self._lines:
             spans, lines = self._lines[interface]
-            sections: dict[str, dict[str, list[Member]]] = {}
+            sections: dict[str, dict[str, list[FieldMember]]] = {}
             for line in lines:
                 section, *members = line[1:].split(" ")
                 rows = sections.setdefault(section, {})
@@ -127,7 +127,7 @@ class History:
                     if match:
                         name, constant, nested, array, there, successor = match.groups()
                         rows.setdefault(name, []).append(
-                            Member(name, nested or "", bool(array), bool(constant),
+                            FieldMember(name, nested or "", bool(array), bool(constant),
                                    _spans(there, len(self.starts)) if there else spans, successor or "")
                         )  # fmt: skip
             known = self._definitions[interface] = Definition(spans, sections)
@@ -209,7 +209,7 @@ class Fields:
 
     def __init__(self, path: Path):
         self._path = path
-        self._histories: dict[tuple[str, int], History | None] = {}
+        self._histories: dict[tuple[str, int], FieldsHistory | None] = {}
 
     @cached_property
     def _packed(self) -> bytes:
@@ -236,12 +236,12 @@ class Fields:
         """Every package of every generation, as `package generation`."""
         return list(self._texts)
 
-    def history(self, package: str, ros: int) -> History | None:
+    def history(self, package: str, ros: int) -> FieldsHistory | None:
         """A package's versions; None when it was not read."""
         key = (package, ros)
         if key not in self._histories:
             text = self._texts.get(f"{package} {ros}")
-            self._histories[key] = History(text) if text else None
+            self._histories[key] = FieldsHistory(text) if text else None
         return self._histories[key]
 
 

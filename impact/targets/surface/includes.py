@@ -29,7 +29,7 @@ def compiled(header: HeaderSurface) -> HeaderSurface:
     return msgspec.structs.replace(header, includes=tuple(kept), announced=announced)
 
 
-class Row(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class IncludesRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a header includes, and which types it announces without defining them, in some versions. spans: first and
     last places of those, over and over; empty for all. includes, announced: places in Included.every and types."""
 
@@ -46,7 +46,7 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
     approximate: tuple[str, ...]
     every: tuple[Include, ...]
     types: tuple[str, ...]
-    headers: dict[str, tuple[Row, ...]]
+    headers: dict[str, tuple[IncludesRow, ...]]
 
     def stands_for(self, version: str) -> str | None:
         """The stored version that stands for one: itself, or the newest before it that was read at its tag; None for
@@ -67,7 +67,7 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         row = self._row(header, version)
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
-    def _row(self, header: str, version: str) -> Row | None:
+    def _row(self, header: str, version: str) -> IncludesRow | None:
         rows = self.headers.get(header)
         if not rows or version not in self.versions:
             return None

@@ -8,12 +8,12 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...facts.surface import declared
-from .changes import Event, Form, Line, Told
+from .changes import ChangeEvent, ComparedThing, Form, Line
 
 if TYPE_CHECKING:
     from ..target import Target
-    from .python import Names
-    from .store import History, Surfaces
+    from .python import SurfaceNames
+    from .store import SurfaceHistory, Surfaces
     from .surface import BuildSurface
 
 
@@ -49,7 +49,7 @@ class Offered(NamedTuple):
     after: Form | None
     coming: str
     gone_in: str
-    told: tuple[Told, ...]
+    told: tuple[ComparedThing, ...]
     instead: str
     moved_to: str
     sure: bool
@@ -61,7 +61,7 @@ class Offers:
     def __init__(self, target: Target, surfaces: Surfaces | None = None):
         self.target = target
         self._given = surfaces
-        self._packages: dict[str, Offer | None] = {}
+        self._packages: dict[str, PackageOffer | None] = {}
 
     @cached_property
     def surfaces(self) -> Surfaces:
@@ -70,13 +70,13 @@ class Offers:
 
         return self._given or shipped()
 
-    def package(self, name: str) -> Offer | None:
+    def package(self, name: str) -> PackageOffer | None:
         """What a package offers there; None when it is not there, or nothing comparable is stored."""
         if name not in self._packages:
             self._packages[name] = self._offer(name)
         return self._packages[name]
 
-    def history(self, package: str) -> History | None:
+    def history(self, package: str) -> SurfaceHistory | None:
         """All stored versions of a package that the target's ROS generation has; None when there is none."""
         return self.surfaces.history(package, self.target.ros)
 
@@ -121,11 +121,11 @@ class Offers:
         # Where generators install to stands in none of the package's own files.
         return header.installed != f"include/{path}" if header.source else not self.has_one_include_folder
 
-    def _offer(self, name: str) -> Offer | None:
+    def _offer(self, name: str) -> PackageOffer | None:
         version = self.target.version(name)
         line = self.surfaces.line(name, self.target.ros) if version else None
         place = line.place(version) if line is not None and version else None
-        return None if line is None or place is None or not version else Offer(self, name, version, line, place)
+        return None if line is None or place is None or not version else PackageOffer(self, name, version, line, place)
 
     def find(self, side: str, name: str, packages: Iterable[str]) -> Offered | None:
         """The first of these packages' names that is so called and not as everywhere; or what it stands in: a member
@@ -146,7 +146,7 @@ class Offers:
         return offer is not None and history is not None and history.has(name, offer.stored)
 
 
-class Offer:
+class PackageOffer:
     """One package on one target. stored: the version that stands for the target's; exact: it is the same."""
 
     def __init__(self, offers: Offers, package: str, version: str, line: Line, place: int):
@@ -186,7 +186,7 @@ class Offer:
             if found is not None:
                 yield found
 
-    def _offered(self, side: str, name: str, events: tuple[Event, ...]) -> Offered:
+    def _offered(self, side: str, name: str, events: tuple[ChangeEvent, ...]) -> Offered:
         versions = self.line.versions
         standing = standing_at(side, events, self.place)
         past, future, there = standing.past, standing.future, standing.there
@@ -233,7 +233,7 @@ class Offer:
         return declarations(self._offers.history(self.package), side, name, version)
 
 
-def declarations(history: History | None, side: str, name: str, version: str) -> tuple[str, ...]:
+def declarations(history: SurfaceHistory | None, side: str, name: str, version: str) -> tuple[str, ...]:
     """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
     else."""
     if history is None or side not in ("c++", "python"):
@@ -251,14 +251,14 @@ def declarations(history: History | None, side: str, name: str, version: str) ->
 
 
 @lru_cache(maxsize=8)
-def _names(history: History, version: str) -> Names | None:
-    from .python import Names
+def _names(history: SurfaceHistory, version: str) -> SurfaceNames | None:
+    from .python import SurfaceNames
 
     python = history.python(version)
-    return Names(python) if python is not None else None
+    return SurfaceNames(python) if python is not None else None
 
 
-def there_at(side: str, events: Sequence[Event], place: int) -> bool:
+def there_at(side: str, events: Sequence[ChangeEvent], place: int) -> bool:
     """Whether a name of which these are all events is there in the version at a place of its line."""
     return standing_at(side, events, place).there
 
@@ -273,11 +273,11 @@ class Standing(NamedTuple):
     here: Form | None
     before: Form | None
     after: Form | None
-    past: Sequence[Event]
-    future: Sequence[Event]
+    past: Sequence[ChangeEvent]
+    future: Sequence[ChangeEvent]
 
 
-def standing_at(side: str, events: Sequence[Event], place: int) -> Standing:
+def standing_at(side: str, events: Sequence[ChangeEvent], place: int) -> Standing:
     """How the version at a place of its line stands to all events of a name."""
     past = [event for event in events if event.place <= place]
     future = [event for event in events if event.place > place]
@@ -290,7 +290,7 @@ def standing_at(side: str, events: Sequence[Event], place: int) -> Standing:
     return Standing(True, deprecated, here, before, future[0].has if future else None, past, future)
 
 
-def effect(side: str, event: Event) -> str:
+def effect(side: str, event: ChangeEvent) -> str:
     """What an event does to a name: it is `gone`, it has `come`, or it has another `form`."""
     whole = [told for told in event.told if "overload" not in told.aspects]
     come = any(told.kind == "added" for told in whole)

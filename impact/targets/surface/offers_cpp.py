@@ -14,10 +14,10 @@ from ..evidence import of_offered
 from ..symbol import Availability, State, Symbol
 from ..version import at_least
 from .changes import Form, Overload
-from .offers import Offer, Offered, Offers, declarations
+from .offers import Offered, Offers, PackageOffer, declarations
 
 if TYPE_CHECKING:
-    from .store import History
+    from .store import SurfaceHistory
 
 
 def _found(state: State, offered: Offered, form: str = "", earlier: bool = True, sure: bool = True) -> Availability:
@@ -76,7 +76,7 @@ def _of_what_is_there(
 
 
 def _inherited(
-    offers: Offers, offer: Offer, name: str, how: str, arguments: int, given: tuple[str, ...]
+    offers: Offers, offer: PackageOffer, name: str, how: str, arguments: int, given: tuple[str, ...]
 ) -> Availability | None:
     """The same of a member that the target's version has no longer, or not yet, in the class itself but in a base of
     it: its form is that of the base's. None where the base cannot be told."""
@@ -88,7 +88,7 @@ def _inherited(
     return None
 
 
-def _between(offer: Offer, offered: Offered) -> bool:
+def _between(offer: PackageOffer, offered: Offered) -> bool:
     """Whether the target's version lies before the first stored one with the next change, and may have it already."""
     if offer.exact:
         return False
@@ -226,7 +226,7 @@ def defaults_changed(offers: Offers, found: Availability, arguments: int) -> tup
 
 
 def default_changed(
-    history: History | None, name: str, last: str, first: str, arguments: int
+    history: SurfaceHistory | None, name: str, last: str, first: str, arguments: int
 ) -> tuple[str, str] | None:
     """The same of a name between two stored versions of its package."""
     old, new = (
@@ -270,7 +270,7 @@ def _untold(offers: Offers, offered: Offered, arguments: int) -> Availability | 
 
 
 def is_untold(
-    history: History, name: str, here: Form | None, before: Form | None, version: str, last: str, arguments: int
+    history: SurfaceHistory, name: str, here: Form | None, before: Form | None, version: str, last: str, arguments: int
 ) -> bool:
     """Whether every overload that takes so many arguments has a template parameter that none of them tells, where an
     earlier version had one without. here, before: the forms in the stored versions `version` and `last`."""
@@ -282,7 +282,7 @@ def is_untold(
     return any(_is_told(one, arguments) for one in _accepting(history, name, last, arguments))
 
 
-def _accepting(history: History, name: str, version: str, arguments: int) -> list[Entity]:
+def _accepting(history: SurfaceHistory, name: str, version: str, arguments: int) -> list[Entity]:
     """The overloads of a function in a stored version that take so many arguments."""
     found = []
     for one in history.entities(name, version):

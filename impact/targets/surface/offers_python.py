@@ -11,12 +11,12 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
-from ...facts.python.surface import Parameter, parameters_of
-from ...facts.python.uses import Given, PythonUse
+from ...facts.python.surface import PythonParameter, parameters_of
+from ...facts.python.uses import CallArguments, PythonUse
 from ..evidence_record import Evidence
 from ..symbol import Availability, State, Symbol
-from .offers import Offer, Offers
-from .python import UNKNOWN, Entry, Names, signature, wrapped
+from .offers import Offers, PackageOffer
+from .python import UNKNOWN, PythonName, SurfaceNames, signature, wrapped
 
 
 class PythonOffers:
@@ -24,7 +24,7 @@ class PythonOffers:
 
     def __init__(self, offers: Offers):
         self._offers = offers
-        self._names: dict[tuple[str, str], Names | None] = {}
+        self._names: dict[tuple[str, str], SurfaceNames | None] = {}
         self._answers: dict[tuple, Availability | None] = {}
         # By package and the last part of a name, the places in the line of versions around its changes.
         self._places: dict[str, dict[str, set[int]]] = {}
@@ -40,16 +40,16 @@ class PythonOffers:
             self._answers[key] = found[0] if found and None not in found else None
         return self._answers[key]
 
-    def names(self, package: str, version: str) -> Names | None:
+    def names(self, package: str, version: str) -> SurfaceNames | None:
         """The Python names of a stored version; None where it has no Python."""
         key = package, version
         if key not in self._names:
             history = self._offers.history(package)
             python = history.python(version) if history is not None else None
-            self._names[key] = Names(python) if python is not None and python.modules else None
+            self._names[key] = SurfaceNames(python) if python is not None and python.modules else None
         return self._names[key]
 
-    def _asked(self, offer: Offer, use: PythonUse) -> Availability | None:
+    def _asked(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         if use.how == "from":
             return self._imported(offer, use)
         lost = self._at(offer, use, offer.place)
@@ -59,7 +59,7 @@ class PythonOffers:
         after = self._at(offer, use, offer.place + 1) if offer.place + 1 < len(offer.line.versions) else lost
         return lost if after is not None and _kind(after) == _kind(lost) else None
 
-    def _at(self, offer: Offer, use: PythonUse, place: int) -> Availability | None:
+    def _at(self, offer: PackageOffer, use: PythonUse, place: int) -> Availability | None:
         names = self.names(offer.package, offer.line.versions[place])
         if names is None:
             return None
@@ -82,7 +82,15 @@ class PythonOffers:
         return None
 
     def _found(
-        self, state: State, offer: Offer, name: str, *, first: str = "", last: str = "", old: str = "", new: str = "",
+        self,
+        state: State,
+        offer: PackageOffer,
+        name: str,
+        *,
+        first: str = "",
+        last: str = "",
+        old: str = "",
+        new: str = "",
         **more: Any,
     ) -> Availability:
         """last, first: the last version that has, or takes, it and the first that has not; of what is not there yet
@@ -99,7 +107,7 @@ class PythonOffers:
 
     # Names
 
-    def _missing(self, offer: Offer, use: PythonUse, place: int, names: Names) -> Availability | None:
+    def _missing(self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames) -> Availability | None:
         if use.how == "override":
             return None
         parts = use.name.split(".")
@@ -122,7 +130,7 @@ class PythonOffers:
                                    replacement=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
         return None
 
-    def _imported(self, offer: Offer, use: PythonUse) -> Availability | None:
+    def _imported(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         """A name that is imported from a module that is there, and that no version knows in any module."""
         history = self._offers.history(offer.package)
         module, _, word = use.name.rpartition(".")
@@ -135,7 +143,7 @@ class PythonOffers:
             return None
         return self._found("not yet", offer, use.name, sure=offer.exact, form="never")
 
-    def _telling(self, offer: Offer, name: str, place: int) -> tuple[list[int], list[int]]:
+    def _telling(self, offer: PackageOffer, name: str, place: int) -> tuple[list[int], list[int]]:
         """Places of the versions before and after one in which a name may be otherwise, the nearest first: those on
         both sides of each change of a name that ends alike."""
         if offer.package not in self._places:
@@ -148,14 +156,14 @@ class PythonOffers:
         places = sorted(at for at in self._places[offer.package].get(last, ()) if at >= 0)
         return [at for at in reversed(places) if at < place], [at for at in places if at > place]
 
-    def _entry(self, offer: Offer, place: int, name: str) -> Entry | None:
+    def _entry(self, offer: PackageOffer, place: int, name: str) -> PythonName | None:
         """What a name is in a stored version; None where it is not there, or that cannot be told."""
         version = offer.line.versions[place]
         names = self.names(offer.package, version) if version not in offer.line.approximate else None
         found = names.find(name) if names is not None else None
         return None if found is UNKNOWN else found
 
-    def _next(self, offer: Offer, place: int) -> str:
+    def _next(self, offer: PackageOffer, place: int) -> str:
         """The version after a stored one, as far as releases were read."""
         later = offer.line.versions[place + 1 : offer.place]
         return next((version for version in later if version not in offer.line.approximate), offer.stored)
@@ -164,7 +172,7 @@ class PythonOffers:
         offer = self._offers.package(package)
         return offer is not None and self._entry(offer, offer.place, name) is not None
 
-    def _instead(self, offer: Offer, gone: str, had: Entry) -> str:
+    def _instead(self, offer: PackageOffer, gone: str, had: PythonName) -> str:
         """What the comparison of versions tells to use, by the name itself or by where it was defined."""
         for name in (gone, had.where):
             known = offer.get("python", name)
@@ -174,7 +182,9 @@ class PythonOffers:
 
     # Calls
 
-    def _refused(self, offer: Offer, use: PythonUse, place: int, names: Names, entry: Entry) -> Availability | None:
+    def _refused(
+        self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames, entry: PythonName
+    ) -> Availability | None:
         here = called_with(names, entry)
         assert use.given is not None
         why = refused(use.given, here) if here is not None else ""
@@ -199,7 +209,7 @@ class PythonOffers:
             )  # fmt: skip
         return None
 
-    def _overridden(self, offer: Offer, use: PythonUse, place: int, entry: Entry) -> Availability | None:
+    def _overridden(self, offer: PackageOffer, use: PythonUse, place: int, entry: PythonName) -> Availability | None:
         """The base class has a method that is overridden, with other parameters than it had."""
         own = read_parameters(use.parameters)
         if own is None or entry.bound is None or entry.bound.kind != "method" or wrapped(entry.bound):
@@ -225,13 +235,13 @@ def _kind(found: Availability) -> tuple[str, str, bool, str]:
     return found.state, found.form, found.earlier, found.symbol.name
 
 
-def _shown(name: str, entry: Entry) -> str:
+def _shown(name: str, entry: PythonName) -> str:
     if entry.bound is None or entry.bound.kind in ("class", "attribute", "instance", "property"):
         return name
     return f"{name}{signature(entry.bound.parameters)}"
 
 
-def called_with(names: Names, entry: Entry) -> tuple[Parameter, ...] | None:
+def called_with(names: SurfaceNames, entry: PythonName) -> tuple[PythonParameter, ...] | None:
     """The parameters of a function or class; None where they cannot be told."""
     if entry.kind == "class":
         maker = names.member(entry, "__new__")
@@ -246,7 +256,7 @@ def called_with(names: Names, entry: Entry) -> tuple[Parameter, ...] | None:
     return bound.parameters
 
 
-def refused(given: Given, parameters: Iterable[Parameter]) -> str:
+def refused(given: CallArguments, parameters: Iterable[PythonParameter]) -> str:
     """Why a call with these arguments fails, in a clause; empty where it does not, as far as can be told."""
     parameters = tuple(parameters)
     kinds = {parameter.kind for parameter in parameters}
@@ -267,7 +277,7 @@ def refused(given: Given, parameters: Iterable[Parameter]) -> str:
     return next((f"`{name}` must be given" for name in needed if name not in taken and name not in given.keywords), "")
 
 
-def unlike(own: tuple[Parameter, ...], base: tuple[Parameter, ...]) -> str:
+def unlike(own: tuple[PythonParameter, ...], base: tuple[PythonParameter, ...]) -> str:
     """Why a method with its own parameters cannot stand for one of the base's: by what has to be given to either."""
     kinds = {p.kind for p in own}
     wanted = [p for p in base if p.kind in ("positional", "normal") and p.default is None]
@@ -285,7 +295,7 @@ def unlike(own: tuple[Parameter, ...], base: tuple[Parameter, ...]) -> str:
 
 
 @lru_cache(maxsize=4096)
-def read_parameters(text: str) -> tuple[Parameter, ...] | None:
+def read_parameters(text: str) -> tuple[PythonParameter, ...] | None:
     """Parameters as Python writes them, `(a, b=..., *, c)`; None for what is none."""
     try:
         (function,) = ast.parse(f"def f{text}: pass").body

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import msgspec
 
-from ...facts.python.surface import LATE, Bound, Parameter, Taken, is_private
-from .surface import Module, PythonSurface
+from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
+from .surface import InstalledModule, PythonSurface
 
 
-class Entry(NamedTuple):
+class PythonName(NamedTuple):
     """What a dotted name stands for. where: where it is defined. bound: as written there; None for a module, or for
     what another package gives. conditional: it stands under an `if` or a `try`, so it may not be there."""
 
@@ -24,7 +24,7 @@ class Entry(NamedTuple):
     conditional: bool = False
 
 
-UNKNOWN = Entry("", "unknown")
+UNKNOWN = PythonName("", "unknown")
 """Stands for a name of which it cannot be told whether it is there."""
 # Methods that every object has, so that one that is taken away is still there, and those that nobody calls by name.
 _OBJECT = frozenset((*dir(object), "__del__", "__slots__", "__post_init__", "__hash__", "__bool__"))
@@ -32,16 +32,16 @@ _NO_ATTRIBUTES = frozenset(("object", "ABC", "abc.ABC", "Protocol", "typing.Prot
 _DEPTH = 12
 
 
-class Names:
+class SurfaceNames:
     """The names of a surface, ready to be asked."""
 
     def __init__(self, surface: PythonSurface):
         self.surface = surface
-        self.modules: dict[str, Module] = {module.name: module for module in surface.modules}
+        self.modules: dict[str, InstalledModule] = {module.name: module for module in surface.modules}
         self._bound: dict[str, dict[str, list[Bound]]] = {}
         self._taken: dict[str, dict[str, list[Taken]]] = {}
 
-    def find(self, dotted: str) -> Entry | None:
+    def find(self, dotted: str) -> PythonName | None:
         """What a dotted name (`rclpy.node.Node.create_timer`) stands for; None where it is surely not there, UNKNOWN
         where that cannot be told."""
         parts = dotted.split(".")
@@ -52,14 +52,14 @@ class Names:
         if self._hidden(dotted) or self.surface.unresolved:
             return UNKNOWN
         if any(name.startswith(f"{dotted}.") for name in self.modules):
-            return Entry(dotted, "module")  # a folder without __init__.py
+            return PythonName(dotted, "module")  # a folder without __init__.py
         return None
 
-    def of_module(self, module: Module) -> Entry:
+    def of_module(self, module: InstalledModule) -> PythonName:
         """The entry of a module itself."""
-        return Entry(module.name, "module")
+        return PythonName(module.name, "module")
 
-    def below(self, entry: Entry | None, parts: Iterable[str]) -> Entry | None:
+    def below(self, entry: PythonName | None, parts: Iterable[str]) -> PythonName | None:
         """Goes on from an entry, name by name."""
         for part in parts:
             if entry is None or entry.kind in ("unknown", "external"):
@@ -75,7 +75,7 @@ class Names:
     def _hidden(self, dotted: str) -> bool:
         return any(dotted == name or dotted.startswith(f"{name}.") for name in self.surface.unknown)
 
-    def bound(self, module: Module) -> dict[str, list[Bound]]:
+    def bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
         """The names of a module in order of the source, those of classes dotted."""
         known = self._bound.get(module.name)
         if known is None:
@@ -84,7 +84,7 @@ class Names:
                 known.setdefault(bound.name, []).append(bound)
         return known
 
-    def taken(self, module: Module) -> dict[str, list[Taken]]:
+    def taken(self, module: InstalledModule) -> dict[str, list[Taken]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
@@ -94,7 +94,7 @@ class Names:
                     known.setdefault(taken.name, []).append(taken)
         return known
 
-    def _in_module(self, module: Module | None, where: str, name: str, depth: int) -> Entry | None:
+    def _in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
         dotted = f"{where}.{name}"
         if module is not None:
             written = self.bound(module).get(name)
@@ -103,7 +103,7 @@ class Names:
             for taken in reversed(self.taken(module).get(name, ())):
                 return self._imported(module, taken, depth)
         if dotted in self.modules or any(other.startswith(f"{dotted}.") for other in self.modules):
-            return Entry(dotted, "module")
+            return PythonName(dotted, "module")
         if self._hidden(dotted):
             return UNKNOWN
         if module is None:
@@ -117,7 +117,7 @@ class Names:
                 return found
         return UNKNOWN if unsure else None
 
-    def target(self, module: Module, taken: Taken) -> str:
+    def target(self, module: InstalledModule, taken: Taken) -> str:
         """The dotted name of the module that an import is about."""
         if not taken.level:
             return taken.module
@@ -126,11 +126,11 @@ class Names:
         parts = parts[: len(parts) - up] if up else parts
         return ".".join([*parts, *([taken.module] if taken.module else [])])
 
-    def _imported(self, module: Module, taken: Taken, depth: int) -> Entry:
+    def _imported(self, module: InstalledModule, taken: Taken, depth: int) -> PythonName:
         """What an import binds. It binds something, whatever becomes of it."""
         target = self.target(module, taken)
         if not taken.original:
-            return Entry(taken.name, "module") if taken.name in self.modules else Entry(target, "external")
+            return PythonName(taken.name, "module") if taken.name in self.modules else PythonName(target, "external")
         of = self.modules.get(target)
         if of is None or depth > _DEPTH:
             implicit = ""
@@ -138,13 +138,13 @@ class Names:
                 implicit = ".".join([*module.name.split(".")[: None if module.package else -1], target])
             of = self.modules.get(implicit)
             if of is None or depth > _DEPTH:
-                return Entry(f"{target}.{taken.original}", "external")
+                return PythonName(f"{target}.{taken.original}", "external")
         found = self._in_module(of, of.name, taken.original, depth + 1)
         if found is None or found is UNKNOWN:
-            return Entry(f"{target}.{taken.original}", "external")
+            return PythonName(f"{target}.{taken.original}", "external")
         return found._replace(conditional=True) if taken.conditions else found
 
-    def _through_star(self, module: Module, taken: Taken, name: str, depth: int) -> Entry | None:
+    def _through_star(self, module: InstalledModule, taken: Taken, name: str, depth: int) -> PythonName | None:
         of = self.modules.get(self.target(module, taken))
         if of is None or depth > _DEPTH:
             return UNKNOWN
@@ -158,7 +158,7 @@ class Names:
 
     # -- classes
 
-    def member(self, entry: Entry, name: str, depth: int = 0) -> Entry | None:
+    def member(self, entry: PythonName, name: str, depth: int = 0) -> PythonName | None:
         """A member of a class, its base classes included."""
         split = self._split(entry.where)
         if split is None or entry.bound is None or depth > _DEPTH:
@@ -168,7 +168,7 @@ class Names:
         if written:
             return _entry(f"{entry.where}.{name}", written)
         if any(t.scope == inside and t.name == name for t in module.surface.imports):
-            return Entry(f"{entry.where}.{name}", "external")
+            return PythonName(f"{entry.where}.{name}", "external")
         unsure = any(scope == inside for scope, _ in module.surface.open)
         for base in entry.bound.bases:
             found = self.inherited(module, inside, base, name, depth)
@@ -178,11 +178,11 @@ class Names:
                 return found
         return UNKNOWN if unsure else None
 
-    def inherited(self, module: Module, inside: str, base: str, name: str, depth: int) -> Entry | None:
+    def inherited(self, module: InstalledModule, inside: str, base: str, name: str, depth: int) -> PythonName | None:
         """A member by way of a base class, as written."""
         base = base.partition("[")[0].strip()
         if base in _NO_ATTRIBUTES:
-            return Entry(f"object.{name}", "external") if name in _OBJECT else None
+            return PythonName(f"object.{name}", "external") if name in _OBJECT else None
         if not re.fullmatch(r"[\w.]+", base):
             return UNKNOWN
         found = self.base(module, inside, base)
@@ -190,15 +190,15 @@ class Names:
             return self.member(found, name, depth + 1)
         known = getattr(builtins, base, None)
         if found is None and isinstance(known, type):
-            return Entry(f"{base}.{name}", "external") if hasattr(known, name) else None
+            return PythonName(f"{base}.{name}", "external") if hasattr(known, name) else None
         return UNKNOWN
 
-    def base(self, module: Module, inside: str, base: str) -> Entry | None:
+    def base(self, module: InstalledModule, inside: str, base: str) -> PythonName | None:
         """What the name of a base class stands for in its module."""
         head, *rest = base.split(".")
         return self.below(self._in_module(module, module.name, head, 0), rest)
 
-    def _split(self, where: str) -> tuple[Module, str] | None:
+    def _split(self, where: str) -> tuple[InstalledModule, str] | None:
         """The module of something defined here, and its name in it."""
         parts = where.split(".")
         for length in range(len(parts) - 1, 0, -1):
@@ -210,10 +210,10 @@ class Names:
     # -- all of them
 
     @cached_property
-    def offered(self) -> dict[str, Entry]:
+    def offered(self) -> dict[str, PythonName]:
         """Every public name that modules offer: their own, and in packages what they re-export. Members of classes are
         not among them, see members()."""
-        found: dict[str, Entry] = {}
+        found: dict[str, PythonName] = {}
         for module in self.surface.modules:
             if any(is_private(part) for part in module.name.split(".")):
                 continue
@@ -227,7 +227,7 @@ class Names:
                     found[dotted] = entry
         return found
 
-    def reexported(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+    def reexported(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
         """Public names that a module has from others of its package and means to offer: what is in its `__all__`, and
         in an `__init__.py` what it imports from below itself; what it takes from elsewhere it needs for itself. seen:
         modules that lead here, as they may take all names from each other."""
@@ -241,7 +241,7 @@ class Names:
                 elif name != "*" and not is_private(name) and (name in listed or (own and module.package)):
                     yield name
 
-    def starred(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+    def starred(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
         """Names that `from module import *` gives, as far as they are written. seen: as of reexported()."""
         if module.surface.all is not None:
             yield from (name for name in module.surface.all if not name.startswith("+"))
@@ -250,7 +250,7 @@ class Names:
         if module.package and module.name not in seen:
             yield from self.reexported(module, seen)
 
-    def members(self, entry: Entry) -> dict[str, Entry]:
+    def members(self, entry: PythonName) -> dict[str, PythonName]:
         """Public members that a class itself has, and `__init__`."""
         split = self._split(entry.where)
         if split is None:
@@ -264,12 +264,12 @@ class Names:
         if "__init__" not in found:
             fields = self.fields(entry, 0)
             if fields is not None:
-                found["__init__"] = Entry(
+                found["__init__"] = PythonName(
                     f"{entry.where}.__init__", "method", Bound("__init__", "method", 0, tuple(fields.values()))
                 )
         return found
 
-    def fields(self, entry: Entry, depth: int) -> dict[str, Parameter] | None:
+    def fields(self, entry: PythonName, depth: int) -> dict[str, PythonParameter] | None:
         """The constructor's parameters of a dataclass; None for any other class, and where a base cannot be told."""
         split = self._split(entry.where)
         if entry.bound is None or split is None or depth > _DEPTH:
@@ -277,7 +277,7 @@ class Names:
         module, inside = split
         if not any(d.rpartition(".")[2] == "dataclass" for d in entry.bound.decorators):
             return None
-        found: dict[str, Parameter] = {}
+        found: dict[str, PythonParameter] = {}
         for base in reversed(entry.bound.bases):
             of = self.base(module, inside, base.partition("[")[0])
             more = self.fields(of, depth + 1) if of is not None and of.kind == "class" else None
@@ -289,20 +289,20 @@ class Names:
             field = head == inside and bound.kind == "attribute" and bound.annotation
             if field and not re.match(r"['\"]?(?:typing\.)?ClassVar\b", bound.annotation):
                 # Which value it has by default is told where that is a literal.
-                found[last] = Parameter(last, "normal", bound.value or "?", bound.annotation)
+                found[last] = PythonParameter(last, "normal", bound.value or "?", bound.annotation)
         return found
 
 
-def _entry(dotted: str, written: list[Bound]) -> Entry:
+def _entry(dotted: str, written: list[Bound]) -> PythonName:
     """What several bindings of one name come to: the last that does not depend on a condition, else the first."""
     written = [b for b in written if not any(c.text == "overload" for c in b.conditions)] or written
     plain = [b for b in written if not b.conditions]
     bound = plain[-1] if plain else written[0]
     others = [b for b in written if b.conditions and LATE not in b.conditions]
-    return Entry(dotted, bound.kind, bound, not plain or bool(others))
+    return PythonName(dotted, bound.kind, bound, not plain or bool(others))
 
 
-class Change(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class PythonChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A difference between two surfaces.
 
     kind: `removed`, `moved` (now: where it can be imported instead), `added`, `signature`, `default`, `deprecated`
@@ -320,19 +320,19 @@ class Change(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: bool = True
 
 
-def compare(old: PythonSurface, new: PythonSurface) -> tuple[Change, ...]:
+def compare(old: PythonSurface, new: PythonSurface) -> tuple[PythonChange, ...]:
     """What changed for those who use the package from Python, sorted by name. A name of which it cannot be told whether
     it is still there is left out."""
-    return _Comparison(Names(old), Names(new)).run()
+    return _Comparison(SurfaceNames(old), SurfaceNames(new)).run()
 
 
 class _Comparison:
-    def __init__(self, old: Names, new: Names):
+    def __init__(self, old: SurfaceNames, new: SurfaceNames):
         self.old, self.new = old, new
-        self.changes: dict[tuple[str, str], Change] = {}
+        self.changes: dict[tuple[str, str], PythonChange] = {}
         self.seen: set[str] = set()
 
-    def run(self) -> tuple[Change, ...]:
+    def run(self) -> tuple[PythonChange, ...]:
         gone = self.modules()
         # The shortest way to a thing is how its members are called.
         for name, entry in sorted(self.old.offered.items(), key=lambda item: (item[0].count("."), item[0])):
@@ -354,7 +354,7 @@ class _Comparison:
         return {change.now for change in self.changes.values() if change.kind == "moved"}
 
     def add(self, kind: str, name: str, what: str, **more) -> None:
-        self.changes.setdefault((kind, name), Change(kind, name, what, **more))
+        self.changes.setdefault((kind, name), PythonChange(kind, name, what, **more))
 
     def modules(self) -> list[str]:
         """Public modules that are gone: told once for the topmost."""
@@ -380,7 +380,7 @@ class _Comparison:
         has = {n for n in self.new.bound(self.new.modules[new]) if "." not in n}
         return not had or len(had & has) * 2 >= len(had)
 
-    def missing(self, name: str, entry: Entry, gone: list[str]) -> None:
+    def missing(self, name: str, entry: PythonName, gone: list[str]) -> None:
         """A name that can no longer be imported from where it was."""
         target = self.elsewhere(name, entry)
         inside = any(name.startswith(f"{module}.") for module in gone)
@@ -390,7 +390,7 @@ class _Comparison:
         elif not inside:
             self.add("removed", name, entry.kind, old=shown(entry), sure=not entry.conditional)
 
-    def elsewhere(self, name: str, entry: Entry) -> str:
+    def elsewhere(self, name: str, entry: PythonName) -> str:
         """Where else the thing can be imported from, empty where nowhere or where several things are like it."""
         last = name.rpartition(".")[2]
         found: dict[str, list[str]] = {}
@@ -405,7 +405,7 @@ class _Comparison:
             return ""
         return min(next(iter(found.values())), key=lambda path: (path.count("."), path))
 
-    def alike(self, old: Entry, new: Entry) -> bool:
+    def alike(self, old: PythonName, new: PythonName) -> bool:
         """Whether two things of one name may be the same: by the name of their module, else functions by their
         parameters, classes by their members."""
         if old.bound is None or new.bound is None:
@@ -420,7 +420,7 @@ class _Comparison:
             return len(had & has) * 2 >= len(had | has)
         return old.bound.value == new.bound.value and bool(old.bound.value)
 
-    def both(self, name: str, old: Entry, new: Entry) -> None:
+    def both(self, name: str, old: PythonName, new: PythonName) -> None:
         """A thing that both have."""
         if old.bound is None or new.bound is None:
             return
@@ -438,7 +438,7 @@ class _Comparison:
         elif old.kind == "attribute" and old.bound.value and new.bound.value and old.bound.value != new.bound.value:
             self.add("default", name, old.kind, old=old.bound.value, now=new.bound.value, breaks=False, sure=sure)
 
-    def classes(self, name: str, old: Entry, new: Entry) -> None:
+    def classes(self, name: str, old: PythonName, new: PythonName) -> None:
         mine = self.new.members(new)
         for member, had in self.old.members(old).items():
             dotted = f"{name}.{member}"
@@ -456,7 +456,7 @@ class _Comparison:
             if member != "__init__" and self.old.member(old, member) is None:
                 self.add("added", f"{name}.{member}", has.kind, now=shown(has), breaks=False)
 
-    def signatures(self, name: str, old: Entry, new: Entry, sure: bool) -> None:
+    def signatures(self, name: str, old: PythonName, new: PythonName, sure: bool) -> None:
         assert old.bound is not None and new.bound is not None
         had, has = old.bound.parameters, new.bound.parameters
         sure = sure and not (wrapped(old.bound) or wrapped(new.bound))
@@ -498,7 +498,7 @@ def _callable(kind: str) -> bool:
     return kind in ("function", "method", "classmethod", "staticmethod")
 
 
-def _nature(entry: Entry) -> str:
+def _nature(entry: PythonName) -> str:
     """How a thing is used: `value` without a call; empty where it cannot be told, since a name may stand for a class
     or a function."""
     if entry.kind in ("attribute", "instance"):
@@ -506,7 +506,7 @@ def _nature(entry: Entry) -> str:
     return "value" if entry.kind == "property" else "call" if _callable(entry.kind) else entry.kind
 
 
-def shown(entry: Entry) -> str:
+def shown(entry: PythonName) -> str:
     """What stands behind a name where it is defined: parameters, bases or a value."""
     bound = entry.bound
     if bound is None:
@@ -516,7 +516,7 @@ def shown(entry: Entry) -> str:
     return f"({', '.join(bound.bases)})" if bound.kind == "class" else bound.value
 
 
-def signature(parameters: Iterable[Parameter]) -> str:
+def signature(parameters: Iterable[PythonParameter]) -> str:
     """Parameters as Python writes them, without annotations."""
     texts: list[str] = []
     last = ""
@@ -534,10 +534,10 @@ def signature(parameters: Iterable[Parameter]) -> str:
     return f"({', '.join(texts)})"
 
 
-def broken_by(old: tuple[Parameter, ...], new: tuple[Parameter, ...]) -> str:
+def broken_by(old: tuple[PythonParameter, ...], new: tuple[PythonParameter, ...]) -> str:
     """Why a call that the old parameters took may fail with the new ones, empty where none does."""
     kinds = {parameter.kind for parameter in new}
-    by_name: Mapping[str, Parameter] = {p.name: p for p in new if p.kind in ("normal", "keyword")}
+    by_name: Mapping[str, PythonParameter] = {p.name: p for p in new if p.kind in ("normal", "keyword")}
     had = [p for p in old if p.kind in ("positional", "normal")]
     has = [p for p in new if p.kind in ("positional", "normal")]
     for parameter in old:

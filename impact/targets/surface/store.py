@@ -70,7 +70,7 @@ def _fields_of_build() -> dict[str, Any]:
     return {field.name: field.type for field in fields if isinstance(getattr(empty, field.name), tuple)}
 
 
-class History:
+class SurfaceHistory:
     """All stored versions of one package of one ROS generation, oldest first. approximate: those that a branch stood
     for."""
 
@@ -154,12 +154,12 @@ class History:
         """The Python of a version; None for one that is not stored."""
         if version not in self.versions:
             return None
-        from .surface import Module, PythonSurface
+        from .surface import InstalledModule, PythonSurface
 
         bound, taken = self._inside("bound", version, Bound), self._inside("taken", version, Taken)
         told = self._inside("python", version, str)
         modules = (
-            Module(
+            InstalledModule(
                 name,
                 path,
                 is_package,
@@ -347,15 +347,15 @@ class Surfaces:
         """The ROS generations of which versions of a package are stored."""
         return self._generations.get(package, ())
 
-    def history(self, package: str, ros: int) -> History | None:
+    def history(self, package: str, ros: int) -> SurfaceHistory | None:
         """All versions of a package that a ROS generation has, None when there is none."""
         # Most packages that are asked for are not stored, and must not displace those that are.
         return self._history(package, ros) if ros in self.generations(package) else None
 
     @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
-    def _history(self, package: str, ros: int) -> History | None:
+    def _history(self, package: str, ros: int) -> SurfaceHistory | None:
         row = self._row("data, includes", package, ros)
-        return History(package, *row) if row else None
+        return SurfaceHistory(package, *row) if row else None
 
     @lru_cache(maxsize=1024)  # noqa: B019
     def line(self, package: str, ros: int) -> Line | None:

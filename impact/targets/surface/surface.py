@@ -32,7 +32,7 @@ class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     mentioned: tuple[str, ...] | None = None
 
 
-class Module(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class InstalledModule(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An installed module. name: dotted. path: its source, relative to the package. package: it is an `__init__.py`."""
 
     name: str
@@ -46,7 +46,7 @@ class PythonSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     generated interfaces. unresolved: what kept the modules from being told, in a clause each."""
 
     package: str
-    modules: tuple[Module, ...] = ()
+    modules: tuple[InstalledModule, ...] = ()
     unknown: tuple[str, ...] = ()
     unresolved: tuple[str, ...] = ()
 
@@ -71,7 +71,7 @@ class Header(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: bool = True
 
 
-class Program(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class InstalledProgram(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An executable. place: the folder in the prefix. how: `binary`, `script`, `component` or `entry point`."""
 
     name: str
@@ -89,7 +89,7 @@ class Plugin(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: bool = True
 
 
-class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class InstalledLaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An installed launch file. path: in the package's share folder. arguments: name and default, None where it must be
     given, `?` where the default is no plain text."""
 
@@ -120,8 +120,8 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     commands: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
     standard: int = 0
-    programs: tuple[Program, ...] = ()
+    programs: tuple[InstalledProgram, ...] = ()
     plugins: tuple[Plugin, ...] = ()
-    launches: tuple[LaunchFile, ...] = ()
+    launches: tuple[InstalledLaunchFile, ...] = ()
     headers: tuple[Header, ...] = ()
     unknown: tuple[tuple[str, str], ...] = ()

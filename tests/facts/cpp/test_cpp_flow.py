@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.facts.cpp.flow import extract
-from rosimpact.impact.facts.flow import Expr, FlowFile
+from rosimpact.impact.facts.flow import FlowExpr, FlowFile
 
 
-def said(expr: Expr | None) -> str:
+def said(expr: FlowExpr | None) -> str:
     """An expression as `kind:text(parts)`."""
     if expr is None:
         return ""

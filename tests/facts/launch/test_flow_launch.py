@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.launch.actions import LaunchFile, Piece, plain
+from rosimpact.impact.facts.launch.actions import LaunchFile, ValuePart, plain
 from rosimpact.impact.facts.launch.flow import extract, substitutions, words
 from rosimpact.impact.facts.launch.parameter_files import ParameterFile, scalar
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
@@ -362,4 +362,4 @@ def test_never_raises(data, kind):
 @given(st.text(alphabet="$()'\" \\abvr-", max_size=60))
 def test_substitutions_never_raise(text):
     for generation in (1, 2):
-        assert all(isinstance(piece, Piece) for piece in substitutions(text, generation))
+        assert all(isinstance(piece, ValuePart) for piece in substitutions(text, generation))

@@ -5,7 +5,7 @@ import textwrap
 import pytest
 from rosimpact.impact.facts.launch.references import extract as extract_launch
 from rosimpact.impact.facts.python.source import extract
-from rosimpact.impact.facts.python.uses import Given, PythonUse
+from rosimpact.impact.facts.python.uses import CallArguments, PythonUse
 
 
 def uses(source: str) -> list[PythonUse]:
@@ -72,7 +72,7 @@ def test_uses_are_told_by_what_names_are_bound_to(source, expected):
 
 def test_arguments_of_a_call():
     found = [use.given for use in uses("from a import f\nf(1, 2, k=3)\nf(*x)\nf(1, **y)")]
-    assert found == [Given(2, ("k",)), Given(0, (), True), Given(1, (), True)]
+    assert found == [CallArguments(2, ("k",)), CallArguments(0, (), True), CallArguments(1, (), True)]
 
 
 @pytest.mark.parametrize(

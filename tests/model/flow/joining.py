@@ -7,17 +7,17 @@ from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.facts.python import flow as flow_python
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.flow.defined import Defined
+from rosimpact.impact.model.flow.defined import DefinedInterfaces
 from rosimpact.impact.model.flow.frameworks import Frameworks
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
-from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.nodes import BuiltPackage
 from rosimpact.impact.model.flow.workspace import graph_of, linked
 
 
 def joined(
-    files: dict[str, str], ros: int = 2, built: tuple[Built, ...] = (), table: Frameworks | None = None,
-    defined: Defined | None = None,
+    files: dict[str, str], ros: int = 2, built: tuple[BuiltPackage, ...] = (), table: Frameworks | None = None,
+    defined: DefinedInterfaces | None = None,
 ) -> Join:  # fmt: skip
     """Sources by path, the first folder being the package; every file with a main is an executable of its own, every
     Python file a script, unless told otherwise."""
@@ -31,7 +31,7 @@ def joined(
     return Join(facts, lambda path: path.split("/")[0], built, ros, table, defined)
 
 
-def _built(package: str, facts) -> Built:
+def _built(package: str, facts) -> BuiltPackage:
     inside = {path: file for path, file in facts.items() if path.startswith(f"{package}/")}
     mains = {
         path.rpartition("/")[2].partition(".")[0]: (path,)
@@ -39,7 +39,7 @@ def _built(package: str, facts) -> Built:
         if any(function.name == "main" for function in file.functions) and file.language == "cpp"
     }
     scripts = {path.rpartition("/")[2]: path for path, file in inside.items() if file.language == "python"}
-    return Built(package, mains, {}, {}, scripts, {})
+    return BuiltPackage(package, mains, {}, {}, scripts, {})
 
 
 def graph(files: dict[str, str], ros: int = 2, **more) -> Graph:

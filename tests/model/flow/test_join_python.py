@@ -2,7 +2,7 @@
 
 import pytest
 from joining import ends, graph, graph_on_disk, manifest
-from rosimpact.impact.model.flow.defined import Defined
+from rosimpact.impact.model.flow.defined import DefinedInterfaces
 
 NODE = """
     import rclpy
@@ -85,7 +85,7 @@ TALKER = """
 )
 def test_types_of_modules_that_are_imported_whole(first, last, name, expected):
     files = {"p/talker.py": TALKER.format(first=first, last=last, name=name)}
-    found = graph(files, 1, defined=Defined({"own_msgs": {"String", "Move"}}, 1))
+    found = graph(files, 1, defined=DefinedInterfaces({"own_msgs": {"String", "Move"}}, 1))
     assert ends(found, "publisher") == {("p/talker.py", "/out", expected)}
 
 
@@ -103,5 +103,5 @@ def test_types_of_namespaces_that_are_used_whole(first, last, expected):
           ros::Publisher pub = n.advertise<Pose>("out", 1);
         }}
     """
-    found = graph({"p/talker.cpp": main}, 1, defined=Defined({}, 1))
+    found = graph({"p/talker.cpp": main}, 1, defined=DefinedInterfaces({}, 1))
     assert ends(found, "publisher") == {("p/talker", "/out", expected)}

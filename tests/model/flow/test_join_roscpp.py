@@ -2,7 +2,7 @@
 
 import pytest
 from joining import ends, graph
-from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.nodes import BuiltPackage
 
 TALKER = """
     #include <ros/ros.h>
@@ -239,7 +239,7 @@ def test_a_class_made_by_an_alias_that_is_spelt_with_its_namespace():
         """,
         },
         1,
-        built=(Built("p", {"a": ("p/types.h", "p/a.cpp"), "b": ("p/types.h", "p/b.cpp")}, {}, {}, {}, {}),),
+        built=(BuiltPackage("p", {"a": ("p/types.h", "p/a.cpp"), "b": ("p/types.h", "p/b.cpp")}, {}, {}, {}, {}),),
     )
     assert ends(found, "publisher") == {("p/a", "/state", "std_msgs/String")}
 

@@ -2,7 +2,7 @@
 
 import pytest
 from joining import joined
-from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.nodes import BuiltPackage
 from rosrun import rosrun
 
 RELAY = """
@@ -91,7 +91,7 @@ def test_arguments_that_nobody_gives_are_not_known():
 
 
 def test_a_program_loads_one_nodelet_twice():
-    built = (Built("p", {"stereo": ("p/stereo.cpp",)}, {}, {}, {}, {}, {"proc/rectify": "proc::Rectify"}),)
+    built = (BuiltPackage("p", {"stereo": ("p/stereo.cpp",)}, {}, {}, {}, {}, {"proc/rectify": "proc::Rectify"}),)
     found = ends({"p/stereo.cpp": LOADER}, ("p", "stereo"), built=built)
     assert {(topic, kind) for _, topic, kind, _ in found} == {
         ("/left/image_rect", "sensor_msgs/Image"), ("/right/image_rect", "sensor_msgs/Image"),
