@@ -1,5 +1,7 @@
 """What setup.py, setup.cfg and pyproject.toml install."""
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -203,7 +205,7 @@ PIECES = [
 )
 def test_never_raises_and_lines_lie_in_the_file(kind, data):
     facts = extract(data, kind)
-    last = data.count(b"\n") + 1
+    last = len(re.findall(rb"\r\n|\r|\n", data)) + 1
     lines = [e[2] for e in (*facts.entry_points, *facts.data_files)] + [p.line for p in facts.problems]
     assert all(1 <= line <= last for line in lines)
 
