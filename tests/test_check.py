@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -155,3 +156,22 @@ def test_members_of_what_is_not_known_are_counted(tmp_path, made, unresolved):
     )
     coverage = check(tmp_path, Options(targets=("jazzy",))).coverage
     assert coverage.unresolved.get("receiver", 0) == unresolved
+
+
+@pytest.mark.parametrize(
+    ("submodule", "missing"), [("gait/include/steps", []), ("gait/include/other", ["INCLUDE_DIRS"])]
+)
+def test_a_folder_that_another_repository_fills_is_not_missing(tmp_path, submodule, missing):
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    (tmp_path / ".gitmodules").write_text(f'[submodule "steps"]\n\tpath = {submodule}\n\turl = ../steps.git\n')
+    (tmp_path / "gait/include/gait").mkdir(parents=True)
+    (tmp_path / "gait/include/gait/gait.h").write_text("#pragma once\n")
+    (tmp_path / "gait/package.xml").write_text(
+        "<package format='2'><name>gait</name><version>1.0.0</version>"
+        "<buildtool_depend>catkin</buildtool_depend></package>"
+    )
+    (tmp_path / "gait/CMakeLists.txt").write_text(
+        "project(gait)\nfind_package(catkin REQUIRED)\ncatkin_package(INCLUDE_DIRS include include/steps)\n"
+    )
+    findings = check_workspace(tmp_path, targets=["noetic"], select=["nonexistent-export"])
+    assert [finding.subject for finding in findings] == missing

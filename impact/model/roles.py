@@ -129,8 +129,11 @@ class Roles:
         return [key for item in build for key in self._named(item)]
 
     def _list_own_exports(self, package: Package) -> list[str] | None:
-        """What CMake looks for wherever it finds a package of the workspace; None where that is not known."""
+        """What CMake looks for wherever it finds a package of the workspace; None where that is not known, as of a
+        package of plain CMake, which writes its configuration itself."""
         build = package.build
+        if package.build_type == "cmake":
+            return None
         names = [e.item for e in build.exports if e.how in _HANDED_ON and self._view.active(e.conditions)]
         if any("$" in name for name in names) or any(f.how == "ament_auto" for f in build.found):
             return None

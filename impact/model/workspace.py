@@ -136,6 +136,14 @@ class Workspace:
                 yield place
 
     @cached_property
+    def unread(self) -> frozenset[str]:
+        """Files and folders that were not read, as submodules that are not checked out, and folders around them."""
+        found: set[str] = set()
+        for problem in self.gathered.problems:
+            found.update(itertools.accumulate(problem.path.split("/"), "{}/{}".format))
+        return frozenset(found)
+
+    @cached_property
     def headers(self) -> dict[str, list[str]]:
         """Include path to the packages whose files answer it, for every suffix of every header's path."""
         found: dict[str, list[str]] = {}
@@ -455,7 +463,8 @@ class _Linker:
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
         self.code = f"{source_key(__name__)} {version_of_all()}"
-        self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
+        unread = sorted(problem.path for problem in gathered.problems)
+        self.identity = hashlib.sha1(f"{self.code} {ros} {unread}".encode("utf-8", "backslashreplace"))
 
     def digests(self, store) -> list[LinkedPackage]:
         places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
