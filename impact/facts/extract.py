@@ -1,7 +1,6 @@
 """From a tree to the facts of its files: looked up by content, made in parallel where they are not known yet.
 
-What is made is stored every few chunks and at the end, so an interrupted run keeps all it has parsed. Facts are decoded
-when asked for.
+What is made is stored chunk by chunk, so an interrupted run keeps all it has parsed. Facts are decoded when asked for.
 
 Workers are forked where that is safe (processes.py), loky elsewhere; a backend chosen through joblib
 (`parallel_config`) is given the chunks instead.
@@ -31,8 +30,6 @@ from .store import Store, fact_key, pack, unpack
 ALONE_BYTES = 400_000
 _CHUNK_BYTES = 256_000
 _WAVE_PER_JOB = 8
-# Each time that rows are stored takes about as long as making ten of them.
-_ROWS_AT_ONCE = 500
 _LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 # (path, content id, kinds, bytes) of a file to extract; (content id, kind, packed facts, failure) of facts extracted
@@ -297,23 +294,18 @@ def _make(
 
     chunks = _chunks(gathered, unread, paths_of, advance)
     stamps = {kind: table.stamp for kind, table in along.values()}
-    rows: list[tuple[bytes, bytes]] = []
-    try:
-        with closing(_extracted(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
-            for chunk, results in finished:
-                for content, kind, packed, failure in results:
-                    if failure:
-                        for look, path in paths_of[content, kind]:
-                            _drop(look, path, failure)
-                    else:
-                        rows.append((fact_key(content, _version(kind) + stamps.get(kind, "")), packed))
-                        gathered.extracted += kind not in stamps
-                if len(rows) >= _ROWS_AT_ONCE:
-                    gathered.store.put(rows)
-                    rows.clear()
-                advance(sum(len(item[3]) for item in chunk))
-    finally:
-        gathered.store.put(rows)
+    with closing(_extracted(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
+        for chunk, results in finished:
+            rows = []
+            for content, kind, packed, failure in results:
+                if failure:
+                    for look, path in paths_of[content, kind]:
+                        _drop(look, path, failure)
+                else:
+                    rows.append((fact_key(content, _version(kind) + stamps.get(kind, "")), packed))
+                    gathered.extracted += kind not in stamps
+            gathered.store.put(rows)
+            advance(sum(len(item[3]) for item in chunk))
 
 
 def _looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
