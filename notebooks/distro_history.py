@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rosimpact.impact.targets import snapshot as snapshots
 from rosimpact.impact.targets.distro.distro import TargetError, condition_holds, version_key
-from rosimpact.impact.targets.distro.known import Known, day_of, end_of_day, known_distros
+from rosimpact.impact.targets.distro.known import KnownDistro, day_of, end_of_day, known_distros
 from rosimpact.impact.targets.snapshot import Snapshot
 from rosimpact.impact.targets.version import parts
 
@@ -153,7 +153,7 @@ class History:
         known = {one.name: one for one in known_distros(self._data)}
         if distro not in known:
             raise TargetError(f"unknown distro `{distro}`; known are {', '.join(known)}")
-        self.known: Known = known[distro]
+        self.known: KnownDistro = known[distro]
         self.distro = distro
         self.begin = self.known.released
         self.end = min(self.known.end_of_life or self._data.date, self._data.date)

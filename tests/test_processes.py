@@ -87,7 +87,7 @@ def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monke
             yield from ()
 
     rules = {**all_rules(), "unresolvable-key": rule._replace(run=run)}
-    monkeypatch.setattr("rosimpact.impact.analysis.session.all_rules", lambda: rules)
+    monkeypatch.setattr("rosimpact.impact.rules.rule.all_rules", lambda: rules)
     report = check(ws, Options(("humble", "jazzy"), jobs=2, cache=tmp_path / "cache"))
     assert report.failure.count("the rule unresolvable-key failed on humble, jazzy: RuntimeError") == 1
     assert any(finding.rule == "undeclared-package" for finding in report.findings)
