@@ -20,6 +20,7 @@ from ...edges import files
 from ...edges.documents import DocumentError, load_json
 from ...edges.limits import limits
 from .distro.distro import DistroTarget, TargetError
+from .distro.known import known_distros
 from .version import compare
 
 SCHEMA = 1
@@ -61,13 +62,15 @@ def plain(version: str) -> str:
 def from_dpkg(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dict[str, str], dict[str, str]]:
     """(distro, ROS packages, libraries, system packages that matter) from (Debian name, version) pairs.
 
-    Where packages of several distros are installed, the one with most packages is taken.
+    Where packages of several distros are installed, the one with most packages is taken. Debian's own packages of ROS
+    (`ros-image-proc`) are of no distro.
     """
+    known = {one.name for one in known_distros()}
     installed = {name.split(":", 1)[0]: version for name, version in rows}
     by_distro: dict[str, dict[str, str]] = {}
     for name, version in installed.items():
         match = _ROS_DEBIAN.match(name)
-        if match and not name.endswith(("-dbgsym", "-dbg")):
+        if match and match[1] in known and not name.endswith(("-dbgsym", "-dbg")):
             by_distro.setdefault(match[1], {})[match[2].replace("-", "_")] = plain(version)
     distro = max(by_distro, key=lambda d: (len(by_distro[d]), d), default="")
     libraries = {}

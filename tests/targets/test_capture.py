@@ -153,6 +153,12 @@ def test_the_first_package_that_tells_a_library_counts():
     assert libraries["vtk"] == "9.1.0" and matter["libvtk9-dev"] == "9.1.0" and "libvtk7-dev" not in matter
 
 
+def test_packages_of_ros_in_debian_are_of_no_distro():
+    own = [("ros-image-proc", "1.17.0-6"), ("ros-image-publisher", "1.17.0-6")]
+    assert from_dpkg(own)[:2] == ("", {})
+    assert from_dpkg([*own, ("ros-noetic-roscpp", "1.16.0-1focal")])[:2] == ("noetic", {"roscpp": "1.16.0"})
+
+
 def test_differences():
     humble = DistroTarget("humble", "2024-03-01")
     other = humble.changed(versions={"opencv": "4.9", "rclcpp": "99.0"}, name="other")

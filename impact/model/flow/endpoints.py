@@ -121,7 +121,7 @@ def shown(value: FlowExpr | None) -> str:
         name = f"{shown(value.receiver)}.{tail(value.text)}" if value.receiver is not None else value.text
         return f"{name}({', '.join(parts)})"
     if value.kind == "join":
-        return " + ".join(parts)
+        return f" {value.text or '+'} ".join(parts)
     if value.kind == "choice":
         return f"{parts[0]} ? {parts[1]} : {parts[2]}" if len(parts) == 3 else value.text
     if value.kind == "index":
