@@ -954,6 +954,10 @@ class TargetView:
                 found = list(self.providers.module(module))
                 if not any(p.name == head for p in found) and self.is_package(head):
                     found.insert(0, Provider("ros", head, "", False))
+                if found:
+                    # A key of any name that has pip install what is called as the module.
+                    names = dict.fromkeys((head, head.replace("_", "-")))
+                    found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
             known = self._modules[module] = tuple(found)
         return known
 
