@@ -255,8 +255,8 @@ class Changes:
         """The types that the versions asked about (the last one stored when that is any) declare for a name, as
         written there; empty where one of them declares it as a template, or none declares it. kinds: of Entity."""
         found: set[str] = set()
-        for at in self._lines(package) if self._history is not None else ():
-            history = self._history(package, at) if ros in (0, at) else None
+        for at in self._lines(package):
+            history = self._history(package, at) if self._history is not None and ros in (0, at) else None
             if history is None:
                 continue
             asked = self._asked.of(package, at) if self._asked is not None else ((history.versions[-1], False),)
@@ -485,7 +485,7 @@ class Vocabulary:
         """Whether names of a known package begin so."""
         return self.classes.begins(head)
 
-    def pure(self, full: str) -> tuple[str, ...]:
+    def pure(self, full: str) -> Sequence[str]:
         """The methods of a class that only some versions make others implement."""
         return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()
 
