@@ -117,8 +117,10 @@ def main() -> None:
     ):
         if args.breaks:
             records = keep(load(args.breaks, args.sample))
-            for record in records if args.accepted else ():
-                record["accepted_names"] = [*record.get("accepted_names", ()), *accepted().get(record["id"], ())]
+            others = accepted() if args.accepted else {}
+            for record in records:
+                if record["id"] in others:
+                    record["accepted_names"] = [*record.get("accepted_names", ()), *others[record["id"]]]
             rows = [r for r in pool.map(one_break, records) if r["result"] != "no repository"]
             for label, part in (
                 ("all", rows),

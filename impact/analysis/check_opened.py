@@ -200,7 +200,7 @@ def run_and_merge(
             targets=names,
             rules=rules,
             line_text=sources.line,
-            holds=lambda fix, target: all(is_right_on(cure, by_name[target]) for cure in fix),
+            holds=lambda fix, target: all(is_right_on(action, by_name[target]) for action in fix),
         )
         return apply_settings(found, settings, known)
 
@@ -226,17 +226,17 @@ def format_targets(targets: Sequence[str]) -> str:
     return f" on {', '.join(targets)}" if targets else ""
 
 
-def is_right_on(cure: FixAction, view: TargetView) -> bool:
-    """Whether a cure is right on a target where the rule found nothing to cure.
+def is_right_on(action: FixAction, view: TargetView) -> bool:
+    """Whether an action of a fix is right on a target where the rule found nothing to fix.
 
     A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
     """
-    if isinstance(cure, Declare):
-        return view.available(cure.name)
-    if isinstance(cure, Replace):
-        return _has_header(view, cure.new.strip('<>"'))
-    if isinstance(cure, Insert):
-        text = cure.text.strip()
+    if isinstance(action, Declare):
+        return view.available(action.name)
+    if isinstance(action, Replace):
+        return _has_header(view, action.new.strip('<>"'))
+    if isinstance(action, Insert):
+        text = action.text.strip()
         return text.startswith("#include <") and "\n" not in text and view.is_standard(text[10:].rstrip("> "))
     return False
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..config import Config
     from ..facts.store import Store
 
+
 class _Found(msgspec.Struct, frozen=True, array_like=True):
     """A finding as stored: the fields of Finding in their order, its fix packed."""
 

@@ -286,7 +286,7 @@ def test_the_type_of_a_parameter(parameter, type_):
 DRILL = "class Drill {{ public: void spin(int a{0}); }};"
 BOX = """class Box {{ public: void close({0}); std::shared_ptr<Drill> drill() const;
 std::shared_ptr<const Drill> drill(); Drill first; typedef Drill Any; template<class T> Drill pick();
-std::vector<Drill> all(); {1} other(); }};
+std::vector<Drill> all(); {1} other(); typedef Box::Round Ring; typedef Box::Ring Round; }};
 class Chest : public Box {{}};"""
 WORKSHOP = (
     f"namespace shop {{ {DRILL.format('')} {BOX.format('', 'Drill')} }}",
@@ -304,6 +304,7 @@ SPIN = ["shop::Drill::spin/1"]
         ("void g(shop::Box b) { b.all()[0].spin(1); for (auto & one : b.all()) one.spin(1); }", SPIN * 2),
         ("void g() { shop::Box::Any d; d.spin(1); }", SPIN),
         ("void g(shop::Chest b) { b.drill()->spin(1); }", SPIN),
+        ("void g() { shop::Box::Ring r; r.spin(1); }", []),  # it stands for itself in the end
         # of a class of this package that has it of its base
         ("class C : public shop::Box { void g() { drill()->spin(1); this->first.spin(1); } };", SPIN * 2),
         ("class C : public shop::Box { void g() { first.spin(1); } };", SPIN),

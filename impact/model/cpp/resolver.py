@@ -162,6 +162,7 @@ class Resolver:
         self._lines: dict[str, tuple[CppClass, ...]] = {}
         self._opened: tuple[str, ...] | None = None
         self._renamed: dict[str, tuple[str, ...]] = {}
+        self._elsewhere: Resolver | None = None if self.files else self
 
     @property
     def known(self) -> KnownFile:
@@ -584,8 +585,9 @@ class Resolver:
         if self.vocabulary is None or not class_:
             return None
         around, types = self.vocabulary.types_of(class_, name, kind)
-        elsewhere = Resolver((), self.vocabulary, None)
-        found = {elsewhere.type_of(each, CodePlace(around, "", False)) for each in types}
+        if self._elsewhere is None:
+            self._elsewhere = Resolver((), self.vocabulary, None)
+        found = {self._elsewhere.type_of(each, CodePlace(around, "", False)) for each in types}
         return next(iter(found)) if len(found) == 1 else None
 
     def _substituted(
