@@ -270,7 +270,7 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
         here = "link_1" in packages[task[1] : task[1] + size]
         return part(opened, endless if here else rules, packages, size, task)
 
-    endless = [next(iter(all_rules().values()))._replace(run=_endless)]
+    endless = [rule._replace(run=_endless) for rule in all_rules().values()]
     monkeypatch.setattr(judge, "_run_part", of_link_1)
     monkeypatch.setattr(judge, "_estimate_bytes", lambda workspace, packages: -900_000)
     monkeypatch.setattr(judge, "_PACKAGE_BYTES", 0)
