@@ -62,8 +62,8 @@ def test_uses_and_whether_they_are_safe():
     assert any("porter_bringup" in answer.undeclared for answer in undeclared)
 
 
-def answer(what: str, *offers: NameOffer, used=(), undeclared=(), changes=(), target="jazzy") -> WhyAnswer:
-    return WhyAnswer(target, what, offers, used, undeclared, changes)
+def answer(what: str, *offers: NameOffer, used=(), undeclared=(), changes=(), findings=()) -> WhyAnswer:
+    return WhyAnswer("jazzy", what, offers, used, undeclared, changes, findings)
 
 
 PACKAGE = NameOffer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
@@ -88,7 +88,13 @@ PACKAGE = NameOffer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
             [answer("package", PACKAGE, used=tuple(f"a.cpp:{n}" for n in range(1, 15)))],
             "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 14 places:\n"
             + "".join(f"  a.cpp:{n}\n" for n in range(1, 13))
-            + "  and 2 more\nsafe: every package that uses it declares it, or something that brings it",
+            + "  and 2 more\nsafe: every package that uses it declares it, or something that brings it, and check reports "
+            "nothing on it",
+        ),
+        (
+            [answer("header", PACKAGE, used=("a.cpp:1",), findings=("a.cpp:1: error: gone [removed-header]",))],
+            "on jazzy: `x` as header\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 1 place:\n  a.cpp:1\n"
+            "not safe: check reports 1 finding on it:\n  a.cpp:1: error: gone [removed-header]",
         ),
     ],
 )

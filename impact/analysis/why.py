@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from contextlib import suppress
 from itertools import islice
 from pathlib import Path
@@ -10,8 +11,10 @@ from typing import NamedTuple
 
 from ...edges.console import counted, visible
 from ..model.view import TargetView
+from ..rules.rule import Finding
 from ..targets.distro.distro import DistroTarget
 from ..tree import JoinedTree
+from .check_opened import check_opened
 from .session import Options, open_workspace
 
 # Files that make a folder a workspace or a package.
@@ -33,7 +36,8 @@ class NameOffer(NamedTuple):
 
 class WhyAnswer(NamedTuple):
     """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
-    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it."""
+    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it. findings: what
+    check reports on it, as `path:line: severity: message [rule]`."""
 
     target: str
     as_what: str
@@ -41,6 +45,7 @@ class WhyAnswer(NamedTuple):
     used: tuple[str, ...]
     undeclared: tuple[str, ...]
     changes: tuple[str, ...]
+    findings: tuple[str, ...]
 
 
 def is_workspace(folder: Path) -> bool:
@@ -78,10 +83,14 @@ def answers(
     check() does."""
     options = Options(targets=targets, follow_links=follow_links)
     with open_workspace(path or Path(), options, tree=None if path is not None else JoinedTree({})) as opened:
-        return [answer for view in opened.views for answer in _answers(view, name)]
+        found: Sequence[Finding] = ()
+        if opened.workspace.packages:
+            found = check_opened(path or Path(), options, opened).report.findings
+        return [answer for view in opened.views for answer in _answers(view, name, found)]
 
 
-def _answers(view: TargetView, name: str) -> list[WhyAnswer]:
+def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[WhyAnswer]:
+    """findings: what check reports; those at a use of the name, and those that name it, are about it."""
     found = []
     for what, providers in (
         ("header", view.header(name)),
@@ -114,7 +123,18 @@ def _answers(view: TargetView, name: str) -> list[WhyAnswer]:
         changes = (f"gone: `{name}` is not available{where}{instead}", *changes)
     if not found:
         found = [("name", ())]
-    return [WhyAnswer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
+    target = view.target.name
+    here = tuple(
+        _finding_line(each)
+        for each in findings
+        if (f"{each.path}:{each.line}" in used or name == each.subject or f"`{name}`" in each.message)
+        and (not each.targets or target in each.targets)
+    )
+    return [WhyAnswer(target, what, offers, used, undeclared, changes[:8], here) for what, offers in found]
+
+
+def _finding_line(finding: Finding) -> str:
+    return f"{finding.path}:{finding.line}: {finding.severity}: {finding.message} [{finding.rule}]"
 
 
 def _offer(view: TargetView, name: str, package: str) -> NameOffer:
@@ -195,8 +215,16 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
     gone = sorted({a.target for a in found if any(_is_gone(change, name) for change in a.changes)})
     if gone and used:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
-    elif used and not undeclared:
-        lines.append("safe: every package that uses it declares it, or something that brings it")
+    reported = list(dict.fromkeys(line for answer in found for line in answer.findings))
+    if reported:
+        lines.append(f"not safe: check reports {counted(len(reported), 'finding')} on it:")
+        lines += [f"  {line}" for line in reported[:12]]
+        if len(reported) > 12:
+            lines.append(f"  and {len(reported) - 12} more")
+    elif used and not undeclared and not gone:
+        lines.append(
+            "safe: every package that uses it declares it, or something that brings it, and check reports nothing on it"
+        )
     return "\n".join(map(visible, lines))
 
 

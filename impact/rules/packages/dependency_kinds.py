@@ -49,8 +49,11 @@ def _list_wrong_kinds(view: TargetView, package: Package) -> Iterator[WrongKind]
         if fitting not in brought:
             brought[fitting] = view.spread(name for name, of_name in declared.items() if of_name & fitting)
         if not view.answered(need.providers, brought[fitting]):
-            seen.add(own[0])
-            yield WrongKind(need, own[0], kinds, lacking)
+            # Of several that may bring it, the one that is named as it is (`gmock/gmock.h`: libgmock-dev, not gtest).
+            head = need.subject.partition("/")[0]
+            name = next((name for name in own if head in name), own[0])
+            seen.add(name)
+            yield WrongKind(need, name, kinds, lacking)
 
 
 def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
