@@ -36,7 +36,7 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "srv": ("interface", "Interface"),
     "action": ("interface", "Interface"),
     "idl": ("interface", "Interface"),
-    "cpp": ("cpp", "CppFile"),
+    "cpp": ("cpp.lexical", "CppFile"),
     "python": ("python.source", "PythonFile"),
     "launch_xml": ("launch.references", "ReferenceFile"),
     "launch_yaml": ("launch.references", "ReferenceFile"),

@@ -14,7 +14,7 @@ from functools import lru_cache
 import msgspec
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, scan, standing, text_of
+from .cpp.lexical import KEYWORDS, CppFile, scan, standing, text_of
 from .expressions import has_needed, last_literals, needed_words
 
 _MEMBER = r"(?:->|\.)\s*"
@@ -80,26 +80,10 @@ _MOST_BRACKETS = 16
 _LONGEST_TYPES = 2000
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
-_NOT_A_TYPE = frozenset(
-    [
-        "return",
-        "else",
-        "throw",
-        "new",
-        "co_return",
-        "co_await",
-        "co_yield",
-        "case",
-        "and",
-        "or",
-        "not",
-        "do",
-        "in",
-        "if",
-        "elif",
-        "while",
-    ]
-)
+_NOT_A_TYPE = frozenset((
+    "return", "else", "throw", "new", "co_return", "co_await", "co_yield", "case", "and", "or", "not", "do", "in", "if",
+    "elif", "while",
+))  # fmt: skip
 _KEYWORD_TEXT = " ".join(sorted(KEYWORDS))
 _KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")

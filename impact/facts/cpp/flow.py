@@ -12,38 +12,16 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from tree_sitter import Node, Parser
+from tree_sitter import Node
 
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
-from . import EXPORTING, beginning_lines, exports_of, scan
 from .flow_clean import Cleaned, cleaned, cleaned_further
-from .flow_grammar import (
-    ARGUMENTS,
-    BRACES,
-    COMPOUND,
-    DECLARATORS,
-    DECLARED_TYPES,
-    EQUALS,
-    ERROR,
-    FUNCTION_DECLARATOR,
-    IDENTIFIER,
-    INIT_DECLARATOR,
-    LANGUAGE,
-    NAMES,
-    PARAMETERS,
-    POINTER_DECLARATOR,
-    REFERENCE,
-    TRAILING_RETURN,
-    TYPES,
-    grammatical,
-    kind,
-    listed_in,
-)
-from .flow_statements import FIELD_INITIALIZERS, PREPROC, CppStatements
+from .flow_grammar import DECLARATORS, DECLARED_TYPES, EQUALS, ERROR, KIND, NAMES, PARSER, TYPES, grammatical, listed_in
+from .flow_statements import PREPROC, SEMICOLON, CppStatements
 from .flow_values import READ, bare, flat
+from .lexical import EXPORTING, beginning_lines, exports_of, scan
 
-PARSER = Parser(LANGUAGE)
 INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 
@@ -270,24 +248,25 @@ class _File(CppStatements):
             if said is not None and owner:
                 self.methods.append(bare(self.said(said)))
             return
-        if child.kind_id == MACRO_LIKE and node.children[-1].is_missing:
+        if child.kind_id == KIND.parenthesized_declarator and node.children[-1].is_missing:
             return
         variable = bare(self.said(said))
         target = f"this.{variable}" if owner else joined(name, variable)
         value: FlowExpr | None = None
         children = node.children
         given: Node | None = None
-        if child.kind_id == INIT_DECLARATOR:
+        if child.kind_id == KIND.init_declarator:
             given = child.children[-1]
         elif index + 1 < len(children):
             beside = children[index + 1]
             if beside.kind_id == EQUALS and index + 2 < len(children):
                 given = children[index + 2]
-            elif beside.kind_id == BRACES:
+            elif beside.kind_id == KIND.initializer_list:
                 given = beside
         if given is not None:
-            direct = given.kind_id == ARGUMENTS or (
-                given.kind_id == BRACES and given.prev_sibling is not None and given.prev_sibling.kind_id != EQUALS
+            before = given.prev_sibling
+            direct = given.kind_id == KIND.argument_list or (
+                given.kind_id == KIND.initializer_list and before is not None and before.kind_id != EQUALS
             )
             if direct:
                 inner = listed_in(given)
@@ -304,11 +283,11 @@ class _File(CppStatements):
         """Whether a declarator is that of a function, rather than of a pointer to one."""
         for _ in range(64):
             number = node.kind_id
-            if number == FUNCTION_DECLARATOR:
+            if number == KIND.function_declarator:
                 return node.children[0].kind_id in NAMES
-            if number == OPERATOR_CAST:
+            if number == KIND.operator_cast:
                 return True
-            if number not in (POINTER_DECLARATOR, REFERENCE, INIT_DECLARATOR):
+            if number not in (KIND.pointer_declarator, KIND.reference_declarator, KIND.init_declarator):
                 return False
             inner = next((child for child in node.children if child.kind_id in DECLARATORS), None)
             if inner is None:
@@ -331,13 +310,13 @@ class _File(CppStatements):
     def class_(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
-        if body is None or node.kind_id == ENUM:
+        if body is None or node.kind_id == KIND.enum_specifier:
             return
         said = node.child_by_field_name("name")
         inner = joined(name, bare(self.said(said))) if said is not None else name
         bases: list[str] = []
         for child in node.children:
-            if child.kind_id == BASES:
+            if child.kind_id == KIND.base_class_clause:
                 bases = [self.said(part) for part in child.children if part.kind_id in TYPES]
         kept = getattr(self, "members", None), getattr(self, "methods", None)
         self.members, self.methods = [], []
@@ -382,43 +361,43 @@ class _File(CppStatements):
         children = node.children
         for index, child in enumerate(children):
             number = child.kind_id
-            if number in (COMPOUND, TRY):
+            if number in (KIND.compound_statement, KIND.try_statement):
                 body = child
-            elif number == FIELD_INITIALIZERS:
+            elif number == KIND.field_initializer_list:
                 initializers = child
-            elif number == VIRTUAL:
+            elif child.type == "virtual":
                 virtual = True
             elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
                 declarator = child
             elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
                 self.class_(child, name, owner, conditions)
-        while declarator is not None and declarator.kind_id in (POINTER_DECLARATOR, REFERENCE):
+        while declarator is not None and declarator.kind_id in (KIND.pointer_declarator, KIND.reference_declarator):
             mark = declarator.children[0]
             marks += self.text[mark.start_byte : mark.end_byte]
             declarator = next((part for part in declarator.children if part.kind_id in DECLARATORS), None)
-        if declarator is None or (declarator.kind_id == IDENTIFIER and children[0].kind_id in DECLARED_TYPES):
+        if declarator is None or (declarator.kind_id == KIND.identifier and children[0].kind_id in DECLARED_TYPES):
             # `class MACRO Name { ... }` is taken for a function that gives a `class MACRO`.
             self.misread = True
             self.go_outside(owner)
             for child in children:
-                if child.kind_id == COMPOUND:
+                if child.kind_id == KIND.compound_statement:
                     self.statement(child, -1)
             return
         returns = ""
         listed: Node | None = None
-        if declarator.kind_id == FUNCTION_DECLARATOR:
+        if declarator.kind_id == KIND.function_declarator:
             said = bare(self.said(declarator.children[0]))
             for child in declarator.children:
                 number = child.kind_id
-                if number == PARAMETERS and listed is None:
+                if number == KIND.parameter_list and listed is None:
                     listed = child
-                elif number == TRAILING_RETURN:
+                elif number == KIND.trailing_return_type:
                     returns = self.said(child).removeprefix("->").strip()
-                elif number == VIRTUAL_SPECIFIER:
+                elif number == KIND.virtual_specifier:
                     virtual = True
         else:
             said = self.said(declarator)
-            if declarator.kind_id == OPERATOR_CAST or "operator" in said:
+            if declarator.kind_id == KIND.operator_cast or "operator" in said:
                 said = said.partition("(")[0].strip()
             else:
                 said = bare(said)
@@ -455,7 +434,7 @@ class _File(CppStatements):
     def initializers(self, node: Node, guard: int) -> None:
         """The list of initialisers of a constructor: assignments to members, and to base classes by their names."""
         for child in node.children:
-            if child.kind_id != FIELD_INITIALIZER:
+            if child.kind_id != KIND.field_initializer:
                 continue
             parts = grammatical(child)
             target = f"this.{bare(self.said(parts[0]))}"
@@ -487,38 +466,28 @@ def _is_number(text: str) -> bool:
 
 def guards_file(node: Node, statements: list[Node]) -> bool:
     """Whether an #ifndef is the guard of a header: it defines at once what it asks for."""
-    if not statements or statements[0].kind_id != DEFINE:
+    if not statements or statements[0].kind_id != KIND.preproc_def:
         return False
     asked, defined = node.children[1], statements[0].children[1]
     return asked.text == defined.text
 
 
-SEMICOLON = kind(";", False)
-DEFINE = kind("preproc_def")
-ENUM = kind("enum_specifier")
-BASES = kind("base_class_clause")
-TRY = kind("try_statement")
-VIRTUAL = kind("virtual", False)
-VIRTUAL_SPECIFIER = kind("virtual_specifier")
-OPERATOR_CAST = kind("operator_cast")
-MACRO_LIKE = kind("parenthesized_declarator")
-FIELD_INITIALIZER = kind("field_initializer")
 SCOPED = {
-    kind("namespace_definition"): _File.namespace,
-    kind("linkage_specification"): _File.descend,
-    kind("declaration_list"): _File.descend,
-    kind("template_declaration"): _File.template,
-    kind("template_instantiation"): _File.descend,
-    kind("friend_declaration"): _File.descend,
-    kind("function_definition"): _File.function,
-    kind("declaration"): _File.declared_outside,
-    kind("field_declaration"): _File.declared_outside,
-    kind("alias_declaration"): _File.alias,
-    kind("type_definition"): _File.typedef,
-    kind("using_declaration"): _File.using,
-    kind("namespace_alias_definition"): _File.namespace_alias,
-    DEFINE: _File.define,
-    kind("expression_statement"): _File.statement_outside,
+    KIND.namespace_definition: _File.namespace,
+    KIND.linkage_specification: _File.descend,
+    KIND.declaration_list: _File.descend,
+    KIND.template_declaration: _File.template,
+    KIND.template_instantiation: _File.descend,
+    KIND.friend_declaration: _File.descend,
+    KIND.function_definition: _File.function,
+    KIND.declaration: _File.declared_outside,
+    KIND.field_declaration: _File.declared_outside,
+    KIND.alias_declaration: _File.alias,
+    KIND.type_definition: _File.typedef,
+    KIND.using_declaration: _File.using,
+    KIND.namespace_alias_definition: _File.namespace_alias,
+    KIND.preproc_def: _File.define,
+    KIND.expression_statement: _File.statement_outside,
     ERROR: _File.unparsed,
     **{number: _File.preprocessed for number in PREPROC},
     **{number: _File.class_ for number in DECLARED_TYPES},

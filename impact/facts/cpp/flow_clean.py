@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from . import line_starts, scan, text_of
+from .lexical import line_starts, scan, text_of
 
 
 class Region(NamedTuple):

@@ -7,36 +7,7 @@ from bisect import bisect_right
 from tree_sitter import Node
 
 from ..flow import Assignment, FlowCall, FlowExpr, FlowFunction, FlowParameter
-from .flow_grammar import (
-    ABSTRACT_FUNCTION,
-    ARGUMENTS,
-    BINDING,
-    BRACES,
-    CAPTURE_INITIALIZER,
-    CAPTURES,
-    COMPOUND,
-    DECLARATION,
-    DECLARATORS,
-    DECLARED_TYPES,
-    EQUALS,
-    FUNCTION_DECLARATOR,
-    IDENTIFIER,
-    INIT_DECLARATOR,
-    LAMBDA,
-    NAMES,
-    OPTIONAL_PARAMETER,
-    PARAMETER,
-    PARAMETERS,
-    POINTER_DECLARATOR,
-    REFERENCE,
-    RVALUE,
-    TRAILING_RETURN,
-    TYPE_QUALIFIER,
-    TYPES,
-    VARIADIC_PARAMETER,
-    grammatical,
-    listed_in,
-)
+from .flow_grammar import DECLARATORS, DECLARED_TYPES, EQUALS, KIND, NAMES, PARAMETERS, TYPES, grammatical, listed_in
 from .flow_values import READ, VALUES, FunctionReader, Position, bare, flat
 
 
@@ -49,7 +20,7 @@ class Declarations(FunctionReader):
         typed = False
         for child in children:
             number = child.kind_id
-            if number == TYPE_QUALIFIER:
+            if number == KIND.type_qualifier:
                 pieces.append(self.text[child.start_byte : child.end_byte])
             elif number in DECLARED_TYPES:
                 name = child.child_by_field_name("name")
@@ -67,9 +38,9 @@ class Declarations(FunctionReader):
         marks = ""
         for _ in range(64):
             number = node.kind_id
-            if number in NAMES or number == BINDING:
+            if number in NAMES or number == KIND.structured_binding_declarator:
                 return node, marks
-            if number in (POINTER_DECLARATOR, REFERENCE):
+            if number in (KIND.pointer_declarator, KIND.reference_declarator):
                 mark = node.children[0]
                 marks += self.text[mark.start_byte : mark.end_byte]
             for child in node.children:
@@ -88,17 +59,17 @@ class Declarations(FunctionReader):
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
-            if number == INIT_DECLARATOR:
+            if number == KIND.init_declarator:
                 if not typed:
                     kind_, typed = self.written_type(children), True
                 value = self.initialised(child, guard, kind_)
             elif number in DECLARATORS and (number not in NAMES or typed or self.is_declarator(node, index)):
                 if not typed:
                     kind_, typed = self.written_type(children), True
-                if number == FUNCTION_DECLARATOR:
+                if number == KIND.function_declarator:
                     self.constructed(child, guard, kind_)
                     continue
-                if number == REFERENCE and self.called_after(child, guard, kind_):
+                if number == KIND.reference_declarator and self.called_after(child, guard, kind_):
                     continue
                 given = children[index + 1] if index + 1 < len(children) else None
                 if given is not None and given.kind_id == EQUALS and index + 2 < len(children):
@@ -137,7 +108,7 @@ class Declarations(FunctionReader):
             return self.anything(node, guard, READ, "")
         name, marks = self.declared(children[0])
         given = children[1]
-        if name is None or given.kind_id not in (ARGUMENTS, BRACES):
+        if name is None or given.kind_id not in (KIND.argument_list, KIND.initializer_list):
             return self.anything(node, guard, READ, "")
         variable = self.text[name.start_byte : name.end_byte]
         if kind_.endswith("auto") or marks:
@@ -151,16 +122,16 @@ class Declarations(FunctionReader):
 
     def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
         """`T x = given`."""
-        if declarator.kind_id == IDENTIFIER:
+        if declarator.kind_id == KIND.identifier:
             name, marks = declarator, ""
         else:
             name, marks = self.declared(declarator)
             if name is None:
                 return self.value(given, guard, READ)
-        if name.kind_id == BINDING:
+        if name.kind_id == KIND.structured_binding_declarator:
             value = self.value(given, guard, READ)
             line = self.line(name)
-            variables = [child for child in name.children if child.kind_id == IDENTIFIER]
+            variables = [child for child in name.children if child.kind_id == KIND.identifier]
             for index, child in enumerate(variables):
                 variable = self.text[child.start_byte : child.end_byte]
                 self.known.add(variable)
@@ -177,7 +148,7 @@ class Declarations(FunctionReader):
         """`T x(a, f());` in a function, which the grammar takes for a function's declaration."""
         children = grammatical(node)
         name, marks = self.declared(children[0])
-        listed = next((child for child in children if child.kind_id == PARAMETERS), None)
+        listed = next((child for child in children if child.kind_id == KIND.parameter_list), None)
         if name is None or listed is None:
             return
         types = listed_in(listed)
@@ -199,10 +170,10 @@ class Declarations(FunctionReader):
     def called_after(self, node: Node, guard: int, asked: str) -> bool:
         """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
         children = grammatical(node)
-        if len(children) != 2 or children[0].kind_id != RVALUE or children[1].kind_id != FUNCTION_DECLARATOR:
+        if len(children) != 2 or children[0].type != "&&" or children[1].kind_id != KIND.function_declarator:
             return False
         name, listed = children[1].children[0], children[1].children[-1]
-        if listed.kind_id != PARAMETERS:
+        if listed.kind_id != KIND.parameter_list:
             return False
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
@@ -219,15 +190,15 @@ class Declarations(FunctionReader):
     def taken_for_parameter(self, node: Node, guard: int, position: Position) -> FlowExpr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""
         children = grammatical(node)
-        if node.kind_id != PARAMETER or not children or children[0].kind_id not in TYPES:
+        if node.kind_id != KIND.parameter_declaration or not children or children[0].kind_id not in TYPES:
             return None
         name = bare(self.text[children[0].start_byte : children[0].end_byte])
         if len(children) == 1:
             if name in self.known:
                 self.touch(name, node, guard, position)
             return FlowExpr("name", name)
-        if len(children) == 2 and children[1].kind_id == ABSTRACT_FUNCTION:
-            listed = next((child for child in children[1].children if child.kind_id == PARAMETERS), None)
+        if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
+            listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
             parts: list[FlowExpr] = []
             for child in listed_in(listed) if listed is not None else ():
                 part = self.taken_for_parameter(child, guard, ("pass", name, len(parts)))
@@ -248,7 +219,7 @@ class Declarations(FunctionReader):
             return ()
         for child in listed.children:
             number = child.kind_id
-            if number not in (PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER):
+            if number not in PARAMETERS:
                 continue
             children = child.children
             default: FlowExpr | None = None
@@ -291,19 +262,19 @@ class Declarations(FunctionReader):
         returns = ""
         for child in node.children:
             number = child.kind_id
-            if number == CAPTURES:
+            if number == KIND.lambda_capture_specifier:
                 for capture in child.children:
-                    if capture.kind_id == CAPTURE_INITIALIZER:
+                    if capture.kind_id == KIND.lambda_capture_initializer:
                         parts = grammatical(capture)
                         said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
                         inits.append((said, self.value(parts[-1], guard, READ)))
-            elif number == COMPOUND:
+            elif number == KIND.compound_statement:
                 body = child
-            elif number == ABSTRACT_FUNCTION:
+            elif number == KIND.abstract_function_declarator:
                 for part in child.children:
-                    if part.kind_id == PARAMETERS:
+                    if part.kind_id == KIND.parameter_list:
                         listed = part
-                    elif part.kind_id == TRAILING_RETURN:
+                    elif part.kind_id == KIND.trailing_return_type:
                         returns = self.said(part).removeprefix("->").strip()
         state = self.state()
         self.begin(set(self.known))
@@ -345,4 +316,4 @@ class Declarations(FunctionReader):
         raise NotImplementedError
 
 
-VALUES.update({LAMBDA: Declarations.lambda_, DECLARATION: Declarations.declaration})
+VALUES.update({KIND.lambda_expression: Declarations.lambda_, KIND.declaration: Declarations.declaration})

@@ -16,22 +16,7 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import (
-    ASSERTS,
-    CALL,
-    COMMENT,
-    COMPOUND,
-    CONDITION,
-    DECLARATION,
-    DECLARED_TYPES,
-    ERROR,
-    FUNCTION_DECLARATOR,
-    NEVER_RETURNS,
-    PARAMETERS,
-    grammatical,
-    kind,
-    listed_in,
-)
+from .flow_grammar import ASSERTS, DECLARED_TYPES, ERROR, KIND, NEVER_RETURNS, grammatical, kind, listed_in
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
@@ -49,23 +34,10 @@ JUMPS = 1
 BREAKS = 2
 Leaving = int | tuple[FlowCondition, ...]
 
-ELSE = kind("else_clause")
-CASE = kind("case_statement")
-CATCH = kind("catch_clause")
-FIELD_INITIALIZERS = kind("field_initializer_list")
-EXPRESSION_STATEMENT = kind("expression_statement")
-IF = kind("if_statement")
 SEMICOLON = kind(";", False)
 COLON = kind(":", False)
 CASE_WORD = kind("case", False)
-INIT_STATEMENT = kind("init_statement")
-PREPROC_ELSE = kind("preproc_else")
-PREPROC_ELIF = kind("preproc_elif")
-PREPROC_ELIFDEF = kind("preproc_elifdef")
-PREPROC_IF = kind("preproc_if")
-PREPROC_IFDEF = kind("preproc_ifdef")
-ALTERNATIVES = (PREPROC_ELSE, PREPROC_ELIF, PREPROC_ELIFDEF)
-LABELED = kind("labeled_statement")
+ALTERNATIVES = (KIND.preproc_else, KIND.preproc_elif, KIND.preproc_elifdef)
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _CONTINUE = re.compile(r"\bcontinue\b")
@@ -125,7 +97,7 @@ class CppStatements(Declarations):
         """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
         start = node.start_byte
         parent = node.parent
-        if parent is not None and parent.kind_id == ELSE:
+        if parent is not None and parent.kind_id == KIND.else_clause:
             parent = parent.parent
         for region in regions.between(parent.start_byte if parent is not None else -1, start):
             guard = self.guard("cpp", region.condition, region.line, guard)
@@ -144,9 +116,9 @@ class CppStatements(Declarations):
         regions = self.regions
         for place, child in enumerate(children):
             number = child.kind_id
-            if number == COMMENT:
+            if number == KIND.comment:
                 continue
-            if jumped is not None and number != LABELED:
+            if jumped is not None and number != KIND.labeled_statement:
                 guard = self.never(jumped, guard)
                 jumped = None
             if headed is not None:
@@ -154,12 +126,12 @@ class CppStatements(Declarations):
                 headed = None
                 self.statement(child, outer)
                 continue
-            if number == EXPRESSION_STATEMENT and child.child_count == 2 and child.children[1].is_missing:
+            if number == KIND.expression_statement and child.child_count == 2 and child.children[1].is_missing:
                 if self.heads(child, children[place + 1 : place + 20]):
                     headed = child.children[0]
                     self.value(headed, guard)
                     continue
-            elif number == LABELED:
+            elif number == KIND.labeled_statement:
                 guard, conditions, ended, jumped = base, [], STAYS, None
             read = STATEMENTS.get(number) if regions is None else None
             leaving = self.statement(child, guard) if read is None else read(self, child, guard)
@@ -194,7 +166,7 @@ class CppStatements(Declarations):
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
         or further to the right."""
         following = next((child for child in children if child.start_byte >= node.end_byte and child.is_named), None)
-        if following is None or node.children[0].kind_id != CALL:
+        if following is None or node.children[0].kind_id != KIND.call_expression:
             return False
         _line, column = self.place(node.start_byte)
         next_line, next_column = self.place(following.start_byte)
@@ -207,7 +179,7 @@ class CppStatements(Declarations):
         """Reads the condition in parentheses of an if, while or switch; gives its text."""
         children = listed_in(node)
         for child in children:
-            if child.kind_id == INIT_STATEMENT:
+            if child.kind_id == KIND.init_statement:
                 for part in child.children:
                     if part.is_named:
                         self.statement(part, guard)
@@ -227,11 +199,11 @@ class CppStatements(Declarations):
             other: Node | None = None
             for child in node.children:
                 number = child.kind_id
-                if number == CONDITION:
+                if number == KIND.condition_clause:
                     asked = child
-                elif number == ELSE:
+                elif number == KIND.else_clause:
                     other = child
-                elif asked is not None and child.is_named and number != COMMENT:
+                elif asked is not None and child.is_named and number != KIND.comment:
                     then = child
             if asked is None:
                 return self.sequence(node.named_children, guard)
@@ -243,11 +215,11 @@ class CppStatements(Declarations):
                 break
             guard = self.guard("unless", text, line, guard)
             follows = next(
-                (child for child in reversed(other.children) if child.is_named and child.kind_id != COMMENT), None
+                (child for child in reversed(other.children) if child.is_named and child.kind_id != KIND.comment), None
             )
             if follows is None:
                 break
-            if follows.kind_id == IF and self.regions is None:
+            if follows.kind_id == KIND.if_statement and self.regions is None:
                 node = follows
                 continue
             last = self.statement(follows, guard)
@@ -284,9 +256,9 @@ class CppStatements(Declarations):
     def while_(self, node: Node, guard: int) -> Leaving:
         asked: Node | None = None
         for child in node.children:
-            if child.kind_id == CONDITION:
+            if child.kind_id == KIND.condition_clause:
                 asked = child
-            elif asked is not None and child.is_named and child.kind_id != COMMENT:
+            elif asked is not None and child.is_named and child.kind_id != KIND.comment:
                 text = self.condition(asked, guard)
                 self.statement(child, self.guard("while", text, self.line(node), guard))
                 return STAYS
@@ -307,7 +279,7 @@ class CppStatements(Declarations):
                 closed = closed or child.kind_id == RIGHT_ROUND
             elif closed:
                 body = child
-            elif number in (DECLARATION, INIT_STATEMENT):
+            elif number in (KIND.declaration, KIND.init_statement):
                 self.statement(child, guard)
                 semicolons += 1
             elif semicolons == 0:
@@ -364,7 +336,7 @@ class CppStatements(Declarations):
     # Switch
 
     def switch(self, node: Node, guard: int) -> Leaving:
-        asked = next((child for child in node.children if child.kind_id == CONDITION), None)
+        asked = next((child for child in node.children if child.kind_id == KIND.condition_clause), None)
         body = node.child_by_field_name("body")
         if asked is None or body is None:
             return self.sequence(node.named_children, guard)
@@ -395,24 +367,24 @@ class CppStatements(Declarations):
             if leaving in (JUMPS, BREAKS):
                 falling, other = [], False
         for child in body.children:
-            if child.kind_id != CASE and child.is_named and child.kind_id not in PREPROC:
+            if child.kind_id != KIND.case_statement and child.is_named and child.kind_id not in PREPROC:
                 self.statement(child, guard)
         return self.after_switch(subject, leavings, line)
 
     def cases(self, body: Node, condition: str | None = None):
         """The labels of a switch, nested ones too: value (None for default), node, statements, condition of #if."""
         for child in body.children:
-            if child.kind_id == CASE:
+            if child.kind_id == KIND.case_statement:
                 yield from self.labels(child, condition)
             elif child.kind_id in PREPROC:
                 asked, statements, rest = self.branch(child)
                 for part in statements:
-                    if part.kind_id == CASE:
+                    if part.kind_id == KIND.case_statement:
                         yield from self.labels(part, asked)
                 while rest is not None:
                     _, statements, rest = self.branch(rest)
                     for part in statements:
-                        if part.kind_id == CASE:
+                        if part.kind_id == KIND.case_statement:
                             yield from self.labels(part, f"!({asked})")
 
     def labels(self, case: Node, condition: str | None):
@@ -424,11 +396,12 @@ class CppStatements(Declarations):
         statements: list[Node] = []
         nested: Node | None = None
         for child in children[colon + 1 :]:
-            if child.kind_id == CASE:
+            if child.kind_id == KIND.case_statement:
                 nested = child
                 break
-            statements.append(child)
-        yield value, case, [child for child in statements if child.is_named and child.kind_id != COMMENT], condition
+            if child.is_named and child.kind_id != KIND.comment:
+                statements.append(child)
+        yield value, case, statements, condition
         if nested is not None:
             yield from self.labels(nested, condition)
 
@@ -471,18 +444,18 @@ class CppStatements(Declarations):
         caught: list[tuple[FlowCondition, Leaving]] = []
         for child in node.children:
             number = child.kind_id
-            if number == CATCH:
-                listed = next((part for part in child.children if part.kind_id == PARAMETERS), None)
+            if number == KIND.catch_clause:
+                listed = next((part for part in child.children if part.kind_id == KIND.parameter_list), None)
                 text = flat(self.text[listed.start_byte + 1 : listed.end_byte - 1]) if listed is not None else "..."
                 line = self.line(child)
                 self.parameters(listed)
-                body = next((part for part in child.children if part.kind_id == COMPOUND), None)
+                body = next((part for part in child.children if part.kind_id == KIND.compound_statement), None)
                 inner = self.guard("catch", text, line, guard)
                 left = self.statement(body, inner) if body is not None else STAYS
                 caught.append((FlowCondition("catch", text, line), left))
-            elif number == COMPOUND:
+            elif number == KIND.compound_statement:
                 leaving = self.statement(child, guard)
-            elif number == FIELD_INITIALIZERS:
+            elif number == KIND.field_initializer_list:
                 self.statement(child, guard)
         going_on = [asked for asked, left in caught if left != JUMPS and left != BREAKS]
         if leaving in (JUMPS, BREAKS):
@@ -499,7 +472,7 @@ class CppStatements(Declarations):
 
     def returned(self, node: Node, guard: int) -> Leaving:
         for child in node.children:
-            if child.is_named and child.kind_id != COMMENT:
+            if child.is_named and child.kind_id != KIND.comment:
                 value = self.value(child, guard, ESCAPE, RETURN)
                 self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
         return JUMPS
@@ -517,18 +490,18 @@ class CppStatements(Declarations):
     def expression(self, node: Node, guard: int) -> Leaving:
         child = node.children[0]
         number = child.kind_id
-        if number == COMMENT:
-            child = next((part for part in node.children if part.kind_id != COMMENT), child)
+        if number == KIND.comment:
+            child = next((part for part in node.children if part.kind_id != KIND.comment), child)
             number = child.kind_id
         value = VALUES[number](self, child, guard, READ, "")
-        if number == CALL:
+        if number == KIND.call_expression:
             if value.kind == "call":
                 if value.text in NEVER_RETURNS:
                     return JUMPS
                 if value.text in ASSERTS and value.parts:
                     arguments = child.children[-1].children
                     return (FlowCondition("if", self.outer_text(arguments[1]), self.line(node)),)
-        elif number == THROW:
+        elif number == KIND.throw_statement:
             return JUMPS
         return STAYS
 
@@ -538,12 +511,12 @@ class CppStatements(Declarations):
     def macro_block(self, node: Node, guard: int) -> Leaving:
         """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
         children = grammatical(node)
-        body = next((child for child in children if child.kind_id == COMPOUND), None)
-        head = next((child for child in children if child.kind_id == FUNCTION_DECLARATOR), None)
+        body = next((child for child in children if child.kind_id == KIND.compound_statement), None)
+        head = next((child for child in children if child.kind_id == KIND.function_declarator), None)
         if body is None or head is None:
             return self.sequence(node.named_children, guard)
         known = set(self.known)
-        self.parameters(next((part for part in head.children if part.kind_id == PARAMETERS), None), guard)
+        self.parameters(next((part for part in head.children if part.kind_id == KIND.parameter_list), None), guard)
         text = flat(self.text[node.start_byte : body.start_byte])
         self.statement(body, self.guard("macro", text, self.line(node), guard))
         self.known = known | self.known
@@ -630,30 +603,29 @@ class CppStatements(Declarations):
 
 LEFT_ROUND = kind("(", False)
 RIGHT_ROUND = kind(")", False)
-THROW = kind("throw_statement")
-PREPROC = frozenset((PREPROC_IF, PREPROC_IFDEF))
+PREPROC = frozenset((KIND.preproc_if, KIND.preproc_ifdef))
 STATEMENTS = {
-    COMPOUND: CppStatements.block,
-    EXPRESSION_STATEMENT: CppStatements.expression,
-    IF: CppStatements.if_,
-    kind("while_statement"): CppStatements.while_,
-    kind("for_statement"): CppStatements.for_,
-    kind("for_range_loop"): CppStatements.range_for,
-    kind("do_statement"): CppStatements.do,
-    kind("switch_statement"): CppStatements.switch,
-    kind("try_statement"): CppStatements.try_,
-    kind("return_statement"): CppStatements.returned,
-    kind("co_return_statement"): CppStatements.returned,
-    kind("continue_statement"): CppStatements.jump,
-    kind("break_statement"): CppStatements.broken,
-    kind("goto_statement"): CppStatements.jump,
-    THROW: CppStatements.thrown_,
-    LABELED: CppStatements.labeled,
-    kind("function_definition"): CppStatements.macro_block,
-    PREPROC_IF: CppStatements.preprocessor,
-    PREPROC_IFDEF: CppStatements.preprocessor,
+    KIND.compound_statement: CppStatements.block,
+    KIND.expression_statement: CppStatements.expression,
+    KIND.if_statement: CppStatements.if_,
+    KIND.while_statement: CppStatements.while_,
+    KIND.for_statement: CppStatements.for_,
+    KIND.for_range_loop: CppStatements.range_for,
+    KIND.do_statement: CppStatements.do,
+    KIND.switch_statement: CppStatements.switch,
+    KIND.try_statement: CppStatements.try_,
+    KIND.return_statement: CppStatements.returned,
+    KIND.co_return_statement: CppStatements.returned,
+    KIND.continue_statement: CppStatements.jump,
+    KIND.break_statement: CppStatements.broken,
+    KIND.goto_statement: CppStatements.jump,
+    KIND.throw_statement: CppStatements.thrown_,
+    KIND.labeled_statement: CppStatements.labeled,
+    KIND.function_definition: CppStatements.macro_block,
+    KIND.preproc_if: CppStatements.preprocessor,
+    KIND.preproc_ifdef: CppStatements.preprocessor,
     ERROR: CppStatements.unknown,
-    COMMENT: CppStatements.nothing,
+    KIND.comment: CppStatements.nothing,
     **{
         kind(name): CppStatements.named
         for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")

@@ -20,37 +20,19 @@ from tree_sitter import Node
 from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
 from .flow_grammar import (
-    ARGUMENTS,
-    BINARY,
     BINDS,
-    BRACES,
-    CALL,
-    CAST,
     CHANGES,
-    COMMENT,
-    DEPENDENT,
     ELEMENTS,
     ERROR,
-    FIELD,
-    FIELD_IDENTIFIER,
-    IDENTIFIER,
     JOINING,
+    KIND,
     LISTS,
     LOOKS,
     MAKES,
     OPERATORS,
-    PARENTHESIZED,
     POINTEES,
-    POINTER,
-    QUALIFIED,
-    RAW_STRING,
     SAFE,
     SILENT,
-    STRING,
-    SUBSCRIPT,
-    TEMPLATE_FUNCTION,
-    TEMPLATE_METHOD,
-    THIS,
     THROUGH,
     grammatical,
     kind,
@@ -205,7 +187,7 @@ class FunctionReader:
     def literal(self, node: Node) -> str:
         """The value of a string literal."""
         text = self.text[node.start_byte : node.end_byte]
-        if node.kind_id == RAW_STRING:
+        if node.kind_id == KIND.raw_string_literal:
             start, end = text.find("("), text.rfind(")")
             return text[start + 1 : end] if start >= 0 else ""
         text = text[text.find('"') + 1 : -1]
@@ -217,12 +199,12 @@ class FunctionReader:
         parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
-            if number in (STRING, RAW_STRING):
+            if number in (KIND.string_literal, KIND.raw_string_literal):
                 text = self.literal(child)
                 if parts and parts[-1].kind == "text":
                     text = parts.pop().text + text
                 parts.append(FlowExpr("text", text))
-            elif number == IDENTIFIER:
+            elif number == KIND.identifier:
                 parts.append(FlowExpr("name", self.text[child.start_byte : child.end_byte]))
         if len(parts) == 1:
             return parts[0]
@@ -254,33 +236,33 @@ class FunctionReader:
     def path(self, node: Node, guard: int) -> tuple[str, bool]:
         """A path and whether it begins at a variable of the function; what stands inside, such as an index, is read."""
         number = node.kind_id
-        if number == IDENTIFIER:
+        if number == KIND.identifier:
             name = self.text[node.start_byte : node.end_byte]
             return name, name in self.known
-        if number == FIELD:
+        if number == KIND.field_expression:
             plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
             if plain is not None:
                 return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
             children = grammatical(node)
             path, local = self.path(children[0], guard)
             return f"{path}.{self.member(children[-1])}", local
-        if number == THIS:
+        if number == KIND.this:
             return "this", False
-        if number == QUALIFIED:
+        if number == KIND.qualified_identifier:
             return bare(self.text[node.start_byte : node.end_byte]), False
-        if number in (PARENTHESIZED, POINTER, CAST):
+        if number in (KIND.parenthesized_expression, KIND.pointer_expression, KIND.cast_expression):
             children = grammatical(node)
-            return self.path(children[1] if number == PARENTHESIZED else children[-1], guard)
-        if number == SUBSCRIPT:
+            return self.path(children[1] if number == KIND.parenthesized_expression else children[-1], guard)
+        if number == KIND.subscript_expression:
             children = grammatical(node)
             path, local = self.path(children[0], guard)
             for index in listed_in(children[1]):
                 self.value(index, guard)
             return f"{path}.[]", local
-        if number == CALL:
+        if number == KIND.call_expression:
             children = grammatical(node)
             function = children[0]
-            if function.kind_id == FIELD:
+            if function.kind_id == KIND.field_expression:
                 method = self.member(function.children[-1])
                 if method in ELEMENTS or method in POINTEES:
                     if method in POINTEES:
@@ -311,35 +293,35 @@ class FunctionReader:
         """The callee of a call, by its text alone."""
         function = node.children[0]
         number = function.kind_id
-        if number == FIELD:
+        if number == KIND.field_expression:
             children = grammatical(function)
             return f"{self.receiver(children[0])}.{self.member(children[-1])}"
-        if number in (IDENTIFIER, QUALIFIED, TEMPLATE_FUNCTION):
+        if number in (KIND.identifier, KIND.qualified_identifier, KIND.template_function):
             return bare(self.text[function.start_byte : function.end_byte])
         return self.receiver(function)
 
     def receiver(self, node: Node) -> str:
         """What a method is called on, as a path; nothing is noted."""
         number = node.kind_id
-        if number == THIS:
+        if number == KIND.this:
             return "this"
-        if number == IDENTIFIER:
+        if number == KIND.identifier:
             return self.text[node.start_byte : node.end_byte]
-        if number == QUALIFIED:
+        if number == KIND.qualified_identifier:
             return bare(self.text[node.start_byte : node.end_byte])
-        if number == FIELD:
+        if number == KIND.field_expression:
             plain = self.plain(node)
             if plain is not None:
                 return plain[0]
             children = grammatical(node)
             return f"{self.receiver(children[0])}.{self.member(children[-1])}"
-        if number == PARENTHESIZED:
+        if number == KIND.parenthesized_expression:
             return self.receiver(grammatical(node)[1])
-        if number in (POINTER, CAST):
+        if number in (KIND.pointer_expression, KIND.cast_expression):
             return self.receiver(grammatical(node)[-1])
-        if number == SUBSCRIPT:
+        if number == KIND.subscript_expression:
             return self.receiver(node.children[0]) + ".[]"
-        if number == CALL:
+        if number == KIND.call_expression:
             name = self.called(node)
             if name in THROUGH:
                 arguments = listed_in(node.children[-1])
@@ -355,9 +337,9 @@ class FunctionReader:
 
     def member(self, node: Node) -> str:
         """The name of a member in a field expression, without template arguments."""
-        if node.kind_id == FIELD_IDENTIFIER:
+        if node.kind_id == KIND.field_identifier:
             return self.text[node.start_byte : node.end_byte]
-        if node.kind_id == DEPENDENT:
+        if node.kind_id == KIND.dependent_name:
             node = node.children[-1]
         return bare(self.text[node.start_byte : node.end_byte])
 
@@ -365,7 +347,7 @@ class FunctionReader:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
-            children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+            children = [child for child in children if child.kind_id not in (KIND.comment, ERROR)]
             if len(children) < 2:
                 return self.anything(node, guard, position, target)
         function = children[0]
@@ -377,9 +359,9 @@ class FunctionReader:
         local = False
         receiver = ""
         received: FlowExpr | None = None
-        if number == IDENTIFIER:
+        if number == KIND.identifier:
             callee = text[start : function.end_byte]
-        elif number == FIELD:
+        elif number == KIND.field_expression:
             plain = _PLAIN.fullmatch(text, start, function.end_byte)
             if plain is not None:
                 callee = plain[0].replace("->", ".")
@@ -389,10 +371,10 @@ class FunctionReader:
             else:
                 parts = grammatical(function)
                 member = parts[-1]
-                if member.kind_id == DEPENDENT:
+                if member.kind_id == KIND.dependent_name:
                     member = member.children[-1]
                 at = member.start_byte
-                if member.kind_id == TEMPLATE_METHOD:
+                if member.kind_id == KIND.template_method:
                     name, written = member.children[0], member.children[-1]
                     method = text[name.start_byte : name.end_byte]
                     types = flat(text[written.start_byte + 1 : written.end_byte - 1])
@@ -402,19 +384,19 @@ class FunctionReader:
                 if receiver.endswith("()"):
                     received = self.received
                 callee = f"{receiver}.{method}"
-        elif number == QUALIFIED:
+        elif number == KIND.qualified_identifier:
             callee = text[start : function.end_byte]
             name = function
-            while name.kind_id == QUALIFIED:
+            while name.kind_id == KIND.qualified_identifier:
                 name = name.children[-1]
             at = name.start_byte
-            if name.kind_id == DEPENDENT:
+            if name.kind_id == KIND.dependent_name:
                 name = name.children[-1]
-            if name.kind_id in (TEMPLATE_FUNCTION, TEMPLATE_METHOD):
+            if name.kind_id in (KIND.template_function, KIND.template_method):
                 written = name.children[-1]
                 types = flat(text[written.start_byte + 1 : written.end_byte - 1])
             callee = bare(callee)
-        elif number == TEMPLATE_FUNCTION:
+        elif number == KIND.template_function:
             name, written = function.children[0], function.children[-1]
             callee = text[name.start_byte : name.end_byte]
             types = flat(text[written.start_byte + 1 : written.end_byte - 1])
@@ -479,7 +461,7 @@ class FunctionReader:
         known = self.known
         for child in listed.named_children:
             number = child.kind_id
-            if number == IDENTIFIER:
+            if number == KIND.identifier:
                 start = child.start_byte
                 name = text[start : child.end_byte]
                 if name in known:
@@ -490,7 +472,7 @@ class FunctionReader:
                         else Access(name, "read", line, guard)
                     )
                 result.append(FlowExpr("name", name))
-            elif number != COMMENT:
+            elif number != KIND.comment:
                 position = ("pass", callee, len(result)) if callee else READ
                 result.append(VALUES[number](self, child, guard, position, ""))
         return tuple(result)
@@ -516,9 +498,9 @@ class FunctionReader:
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
             number = inner.kind_id
-            if number in (QUALIFIED, TEMPLATE_FUNCTION):
+            if number in (KIND.qualified_identifier, KIND.template_function):
                 return FlowExpr("function", bare(self.text[inner.start_byte : inner.end_byte]))
-            if number == IDENTIFIER:
+            if number == KIND.identifier:
                 name = self.text[inner.start_byte : inner.end_byte]
                 if name and name not in self.known and not name.endswith("_"):
                     return FlowExpr("function", name)
@@ -536,18 +518,18 @@ class FunctionReader:
         while True:
             children = spine.children
             if len(children) != 3:
-                children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+                children = [child for child in children if child.kind_id not in (KIND.comment, ERROR)]
                 if len(children) != 3:
                     break
             operands.append(children[2])
             signs.append(OPERATORS.get(children[1].kind_id, "?"))
             spine = children[0]
             lefts.append(spine)
-            if spine.kind_id != BINARY:
+            if spine.kind_id != KIND.binary_expression:
                 break
         if not operands:
             return self.anything(node, guard, position, target)
-        if spine.kind_id == BINARY:
+        if spine.kind_id == KIND.binary_expression:
             self.anything(spine, guard, ESCAPE, None)
         operands.append(spine)
         operands.reverse()
@@ -628,7 +610,7 @@ class FunctionReader:
 
     def key(self, node: Node, guard: int) -> FlowExpr | None:
         """The literal in the brackets of an element's path."""
-        if node.kind_id != SUBSCRIPT:
+        if node.kind_id != KIND.subscript_expression:
             return None
         inner = listed_in(grammatical(node)[1])
         return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
@@ -651,7 +633,7 @@ class FunctionReader:
 
     def outer_text(self, node: Node) -> str:
         """A condition as written, without parentheses around the whole."""
-        while node.kind_id == PARENTHESIZED:
+        while node.kind_id == KIND.parenthesized_expression:
             children = grammatical(node)
             if len(children) != 3:
                 break
@@ -674,7 +656,7 @@ class FunctionReader:
         parts: tuple[FlowExpr, ...] = ()
         self.nesting += 1
         for child in children:
-            if child.kind_id in (ARGUMENTS, BRACES):
+            if child.kind_id in (KIND.argument_list, KIND.initializer_list):
                 parts = self.arguments(child, guard, bare(kind_) or "new")
             elif child.is_named and not kind_:
                 kind_ = self.said(child)
@@ -696,9 +678,9 @@ class FunctionReader:
 
 LITERALS: dict[int, Callable[..., FlowExpr]] = {
     **{kind(name): FunctionReader.number for name in ("true", "false", "null", "number_literal", "char_literal")},
-    STRING: FunctionReader.string,
-    RAW_STRING: FunctionReader.string,
-    kind("concatenated_string"): FunctionReader.strings,
+    KIND.string_literal: FunctionReader.string,
+    KIND.raw_string_literal: FunctionReader.string,
+    KIND.concatenated_string: FunctionReader.strings,
 }
 
 
@@ -712,34 +694,34 @@ class _Readers(dict[int, Callable[..., FlowExpr]]):
 VALUES = _Readers(
     {
         **LITERALS,
-        IDENTIFIER: FunctionReader.identifier,
-        QUALIFIED: FunctionReader.qualified,
-        TEMPLATE_FUNCTION: FunctionReader.qualified,
-        FIELD: FunctionReader.field,
-        THIS: FunctionReader.this,
-        CALL: FunctionReader.call,
-        SUBSCRIPT: FunctionReader.subscript,
-        PARENTHESIZED: FunctionReader.parenthesized,
-        POINTER: FunctionReader.pointer,
-        CAST: FunctionReader.last_child,
-        BINARY: FunctionReader.binary,
-        kind("unary_expression"): FunctionReader.unary,
-        kind("update_expression"): FunctionReader.update,
-        kind("assignment_expression"): FunctionReader.assignment,
-        kind("conditional_expression"): FunctionReader.conditional,
-        BRACES: FunctionReader.braces,
-        kind("initializer_pair"): FunctionReader.last_child,
-        kind("new_expression"): FunctionReader.made,
-        kind("compound_literal_expression"): FunctionReader.made,
-        kind("co_await_expression"): FunctionReader.last_child,
-        kind("throw_statement"): FunctionReader.thrown,
-        kind("sizeof_expression"): FunctionReader.asked_only,
-        kind("delete_expression"): FunctionReader.asked_only,
-        COMMENT: FunctionReader.skipped,
-        kind("type_descriptor"): FunctionReader.skipped,
-        kind("template_argument_list"): FunctionReader.skipped,
-        kind("primitive_type"): FunctionReader.skipped,
-        kind("type_identifier"): FunctionReader.skipped,
-        kind("field_identifier"): FunctionReader.skipped,
+        KIND.identifier: FunctionReader.identifier,
+        KIND.qualified_identifier: FunctionReader.qualified,
+        KIND.template_function: FunctionReader.qualified,
+        KIND.field_expression: FunctionReader.field,
+        KIND.this: FunctionReader.this,
+        KIND.call_expression: FunctionReader.call,
+        KIND.subscript_expression: FunctionReader.subscript,
+        KIND.parenthesized_expression: FunctionReader.parenthesized,
+        KIND.pointer_expression: FunctionReader.pointer,
+        KIND.cast_expression: FunctionReader.last_child,
+        KIND.binary_expression: FunctionReader.binary,
+        KIND.unary_expression: FunctionReader.unary,
+        KIND.update_expression: FunctionReader.update,
+        KIND.assignment_expression: FunctionReader.assignment,
+        KIND.conditional_expression: FunctionReader.conditional,
+        KIND.initializer_list: FunctionReader.braces,
+        KIND.initializer_pair: FunctionReader.last_child,
+        KIND.new_expression: FunctionReader.made,
+        KIND.compound_literal_expression: FunctionReader.made,
+        KIND.co_await_expression: FunctionReader.last_child,
+        KIND.throw_statement: FunctionReader.thrown,
+        KIND.sizeof_expression: FunctionReader.asked_only,
+        KIND.delete_expression: FunctionReader.asked_only,
+        KIND.comment: FunctionReader.skipped,
+        KIND.type_descriptor: FunctionReader.skipped,
+        KIND.template_argument_list: FunctionReader.skipped,
+        KIND.primitive_type: FunctionReader.skipped,
+        KIND.type_identifier: FunctionReader.skipped,
+        KIND.field_identifier: FunctionReader.skipped,
     }
 )

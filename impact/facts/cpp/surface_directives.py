@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from ..condition import Condition
 from ..surface import CppParameter, Entity
-from . import Scan
+from .lexical import Scan
 from .surface_types import arguments_of, tokens_of
 
 HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)

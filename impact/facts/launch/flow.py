@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+import msgspec
+
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
 from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, together
@@ -194,17 +196,14 @@ def spaced(values: list[Value]) -> Value:
 # XML and YAML as one kind of tree
 
 
-class _Entity:
+class _Entity(msgspec.Struct, eq=False):
     """An element of a launch file. attributes: the values as written, a list where YAML has one."""
 
-    __slots__ = ("attributes", "children", "line", "tag", "text")
-
-    def __init__(self, tag: str, line: int):
-        self.tag = tag
-        self.line = line
-        self.attributes: dict[str, str | list[str]] = {}
-        self.children: list[_Entity] = []
-        self.text = ""
+    tag: str
+    line: int
+    attributes: dict[str, str | list[str]] = {}
+    children: list[_Entity] = []
+    text: str = ""
 
 
 def _launch(data: bytes, kind: str) -> LaunchFile:

@@ -278,7 +278,7 @@ class Walker:
     run_AsyncFunctionDef = run_FunctionDef
 
     def run_ClassDef(self, statement: ast.ClassDef) -> None:
-        type_ = LaunchClass(statement.name, self.scope)
+        type_ = LaunchClass()
         for inner in statement.body:
             if isinstance(inner, (ast.FunctionDef, ast.AsyncFunctionDef)):
                 type_.methods[inner.name] = LaunchFunction(inner, self.scope)

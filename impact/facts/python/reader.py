@@ -50,21 +50,10 @@ _ABOUT_MACHINE = re.compile(
     r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
     re.IGNORECASE,
 )
-_COMMAND_CALLS = frozenset(
-    (
-        "system",
-        "popen",
-        "Popen",
-        "call",
-        "check_call",
-        "check_output",
-        "run",
-        "getoutput",
-        "ExecuteProcess",
-        "ExecuteLocal",
-        "Command",
-    )
-)
+_COMMAND_CALLS = frozenset((
+    "system", "popen", "Popen", "call", "check_call", "check_output", "run", "getoutput", "ExecuteProcess",
+    "ExecuteLocal", "Command",
+))  # fmt: skip
 _PROGRAM = re.compile(r"[A-Za-z_][\w.+-]*")
 _IN_STRING = re.compile(
     r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"

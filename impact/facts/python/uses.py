@@ -62,14 +62,13 @@ class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int
 
 
-class _Class:
+class _Class(msgspec.Struct, eq=False):
     """A class of the file. bases: as types. members: what it defines itself. objects: types of what `self` holds."""
 
-    def __init__(self, bases: list[str]):
-        self.bases = bases
-        self.members: set[str] = set()
-        self.objects: dict[str, str] = {}
-        self.methods: dict[str, tuple[int, int, str]] = {}
+    bases: list[str]
+    members: set[str] = set()
+    objects: dict[str, str] = {}
+    methods: dict[str, tuple[int, int, str]] = {}
 
 
 class _Raw(NamedTuple):
