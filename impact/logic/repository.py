@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ...edges import processes
+from ...edges.answers import answer_once
 from ..facts import kinds
 from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .changes import LogicChange, ReachedSubscriber, Side
@@ -298,7 +299,6 @@ class _Digests:
     def __init__(self, store: Store):
         self.store = store
         self.packed: dict[bytes, bytes] = {}
-        self._inlets: dict[bytes, tuple] = {}
 
     def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
         """All that are known, those of these keys that the store has among them."""
@@ -311,11 +311,9 @@ class _Digests:
         self.packed.update(rows)
         self.store.remember("digest", [(digest_key(key), unpack(data)) for key, data in rows])
 
+    @answer_once
     def inlets(self, key: bytes):
-        known = self._inlets.get(key)
-        if known is None:
-            known = self._inlets[key] = decoded(self.packed.get(key)).inlets
-        return known
+        return decoded(self.packed.get(key)).inlets
 
 
 def _chunked(states: Iterable[PackageState]) -> list[list[PackageState]]:

@@ -11,31 +11,8 @@ from typing import Protocol
 
 import msgspec
 
-from ...edges.console import UserError
-from ...edges.console import visible as shown
+from ...edges.console import UserError, visible
 from ...edges.limits import limits
-
-__all__ = [
-    "CHARACTERS",
-    "IGNORE_MARKERS",
-    "LEAVES",
-    "LONGEST_PATH",
-    "VERSION_CONTROL",
-    "PathProblem",
-    "Tree",
-    "TreeEntry",
-    "TreeError",
-    "Walked",
-    "blob_id",
-    "inside",
-    "join",
-    "largest_file",
-    "outside",
-    "shown",
-    "too_long",
-    "too_many",
-    "within",
-]  # fmt: skip
 
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
@@ -45,6 +22,7 @@ VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
 CHARACTERS = 100
 # What a working copy can hold: Linux opens no longer paths (PATH_MAX).
 LONGEST_PATH = 4096
+shown = visible
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
 
 

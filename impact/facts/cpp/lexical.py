@@ -7,7 +7,7 @@ into segments, and names are collected per segment. Nothing is expanded: what a 
 import re
 import sys
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from itertools import accumulate, count
 from operator import add
@@ -146,6 +146,42 @@ def text_of(data: bytes) -> str:
 def line_starts(text: str) -> list[int]:
     """The offset at which each line of a text begins, and that of its end."""
     return [0, *map(add, accumulate(map(len, text.split("\n"))), count(1))]
+
+
+_NOT_NEWLINE = re.compile(r"[^\n]+")
+
+
+def blanked(text: str, gone: Iterable[tuple[int, int]]) -> str:
+    """A text with some stretches blanked, its lines as they are. gone: sorted, where each begins and ends."""
+    pieces: list[str] = []
+    position = 0
+    for start, end in gone:
+        if end > position:
+            start = max(start, position)
+            pieces += [text[position:start], _NOT_NEWLINE.sub(blanks, text[start:end])]
+            position = end
+    return "".join(pieces) + text[position:]
+
+
+def blanks(match: re.Match[str]) -> str:
+    """As many blanks as what was found has characters."""
+    return " " * len(match[0])
+
+
+# Where a directive begins and ends, its word, and what follows that.
+Directive = tuple[int, int, str, str]
+
+
+def conditional_blocks(directives: Iterable[Directive]) -> Iterator[list[Directive]]:
+    """The directives of every #if that is closed, from it to its #endif; inner ones first."""
+    opened: list[list[Directive]] = []
+    for directive in directives:
+        if directive[2] in ("if", "ifdef", "ifndef"):
+            opened.append([directive])
+        elif opened and directive[2] in ("elif", "elifdef", "elifndef", "else"):
+            opened[-1].append(directive)
+        elif opened and directive[2] == "endif":
+            yield [*opened.pop(), directive]
 
 
 class _Blocks:

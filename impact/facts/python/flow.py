@@ -511,7 +511,8 @@ class PythonStatements(Expressions):
             bases.append(self.source(base))
         for keyword in node.keywords:
             self.visit(keyword.value)
-        cls = ClassBody(name, tuple(bases), node)
+        last = node.end_lineno or node.lineno
+        cls = ClassBody(name, tuple(bases), node.lineno, last)
         for base in bases:
             if base in self.class_bodies:
                 cls.callbacks |= self.class_bodies[base].callbacks
@@ -523,7 +524,7 @@ class PythonStatements(Expressions):
         self.classes.append(cls)
         self.class_bodies[name] = cls
         around = outer.outer if outer.is_class else outer
-        body = Body(name, cls, node.lineno, node.end_lineno or node.lineno, around if around and around.name else None)
+        body = Body(name, cls, node.lineno, last, around if around and around.name else None)
         body.is_class = True
         body.made = saved
         self.bodies.append(body)
