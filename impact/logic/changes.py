@@ -141,19 +141,9 @@ def _change(
     topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
     near = ", ".join(sorted(at.topics)) or said.variable
     return LogicChange(
-        kind,
-        at.package,
-        at.path,
-        said.line,
-        said.function,
-        ", ".join(said.nodes),
-        near,
-        topics,
-        said.type,
-        old,
-        new,
+        kind, at.package, at.path, said.line, said.function, ", ".join(said.nodes), near, topics, said.type, old, new,
         why,
-    )
+    )  # fmt: skip
 
 
 # A statement

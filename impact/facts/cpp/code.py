@@ -498,12 +498,7 @@ class CppCode:
         elif number == KIND.catch_clause:
             yield from self._parameters_of(node)
         elif number == KIND.for_range_loop:
-            name, *_ = self._declarator(node.child_by_field_name("declarator"))
-            if name is not None and name.kind_id == KIND.structured_binding_declarator:
-                for each in name.named_children:
-                    yield each.start_byte, self._of(each), node, "each"
-            elif name is not None:
-                yield name.start_byte, self._of(name), node, "each"
+            yield from self._named_by(node.child_by_field_name("declarator"), node, "each")
         elif number == KIND.for_statement:
             first = node.child_by_field_name("initializer")
             if first is not None:
@@ -522,14 +517,7 @@ class CppCode:
             number = child.kind_id
             if number == KIND.declaration:
                 for declarator in child.children_by_field_name("declarator"):
-                    name, *_ = self._declarator(declarator)
-                    if name is None:
-                        continue
-                    if name.kind_id == KIND.structured_binding_declarator:
-                        for each in name.named_children:
-                            yield each.start_byte, self._of(each), child, "variable"
-                    else:
-                        yield name.start_byte, self._of(name), child, "variable"
+                    yield from self._named_by(declarator, child, "variable")
                 type_ = child.child_by_field_name("type")
                 if type_ is not None and type_.kind_id in _CLASSES:
                     yield from self._declares_among([type_])
@@ -556,9 +544,14 @@ class CppCode:
         listed = node.child_by_field_name("parameters")
         for each in listed.named_children if listed is not None else ():
             if each.kind_id in PARAMETERS:
-                name, *_ = self._declarator(each.child_by_field_name("declarator"))
-                if name is not None:
-                    yield name.start_byte, self._of(name), each, "parameter"
+                yield from self._named_by(each.child_by_field_name("declarator"), each, "parameter")
+
+    def _named_by(self, declarator: Node | None, node: Node, how: str) -> Iterator[tuple[int, str, Node, str]]:
+        """The names that a declarator has, of a binding each of its own."""
+        name, *_ = self._declarator(declarator)
+        if name is not None:
+            for each in name.named_children if name.kind_id == KIND.structured_binding_declarator else [name]:
+                yield each.start_byte, self._of(each), node, how
 
     def _template_parameters(self, node: Node) -> Iterator[tuple[str, int]]:
         listed = node.child_by_field_name("parameters")
@@ -568,9 +561,8 @@ class CppCode:
                 if names:
                     yield self._of(names[0]), names[0].start_byte
             elif each.kind_id in PARAMETERS:
-                name, *_ = self._declarator(each.child_by_field_name("declarator"))
-                if name is not None:
-                    yield self._of(name), name.start_byte
+                for at, name, *_ in self._named_by(each.child_by_field_name("declarator"), each, ""):
+                    yield name, at
 
     def _declarator(self, node: Node | None) -> tuple[Node | None, str, Node | None, bool]:
         """Name, marks, parameters and whether it is an array, of a declarator."""

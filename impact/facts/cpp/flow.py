@@ -328,17 +328,9 @@ class _File(CppStatements):
         members, methods = self.members, self.methods
         if kept[0] is not None and kept[1] is not None:
             self.members, self.methods = kept[0], kept[1]
-        self.classes.append(
-            FlowClass(
-                inner,
-                tuple(bases),
-                tuple(members),
-                tuple(dict.fromkeys(methods)),
-                self.line(node),
-                self.line_of_end(node),
-                types,
-            )
-        )
+        lines = self.line(node), self.line_of_end(node)
+        found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
+        self.classes.append(found)
 
     def local_type(self, node: Node) -> None:
         self.class_(node, self.name or self.owner, "", ())

@@ -295,21 +295,10 @@ class Declarations(FunctionReader):
         """Notes the function it is in."""
         self.functions.append(
             FlowFunction(
-                self.name,
-                self.owner,
-                parameters,
-                line,
-                end,
-                tuple(self.guards),
-                tuple(self.calls),
-                tuple(self.assignments),
-                tuple(self.accesses),
-                (),
-                returns,
-                virtual,
-                types=self.types,
+                self.name, self.owner, parameters, line, end, tuple(self.guards), tuple(self.calls),
+                tuple(self.assignments), tuple(self.accesses), (), returns, virtual, types=self.types,
             )
-        )
+        )  # fmt: skip
 
     def run(self, body: Node, guard: int = -1) -> None:
         """The statements of a function; given by who knows statements."""

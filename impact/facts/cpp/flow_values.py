@@ -434,18 +434,8 @@ class FunctionReader:
             return FlowExpr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
             line, column = self.place(at)
-            self.calls.append(
-                FlowCall(
-                    callee,
-                    arguments,
-                    line,
-                    column,
-                    guard,
-                    types,
-                    "" if target == RETURN else target or "",
-                    target == RETURN,
-                )
-            )
+            kept = "" if target is None or target == RETURN else target
+            self.calls.append(FlowCall(callee, arguments, line, column, guard, types, kept, target == RETURN))
         if target is None:
             return NOTHING
         if self.nesting > DEEPEST:

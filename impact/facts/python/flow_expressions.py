@@ -181,24 +181,11 @@ class Expressions(SourceText):
         if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
             del self.guards[count:]
 
-    def visit_IfExp(self, node: ast.IfExp) -> None:
+    def visit_IfExp(self, node) -> None:
         self.value(node, "read")
 
-    def visit_Lambda(self, node: ast.Lambda) -> None:
-        self.value_Lambda(node, "")
-
-    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
-        self.value_NamedExpr(node, "read")
-
-    def visit_ListComp(self, node) -> None:
-        self.value_ListComp(node, "")
-
-    visit_SetComp = visit_ListComp
-    visit_GeneratorExp = visit_ListComp
-    visit_DictComp = visit_ListComp
-
-    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        self.value_JoinedStr(node, "read")
+    visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
+    visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_IfExp
 
     def visit_Call(self, node: ast.Call) -> None:
         self.call(node)

@@ -194,15 +194,6 @@ def _imports_by_line(text: str) -> tuple[Import, ...]:
                     imports.append(Import(words[0], (), 0, line, column, column > 1, conditions))
         else:
             names = [part.split() for part in match.group("names").strip("()").split(",")]
-            imports.append(
-                Import(
-                    match.group("module") or "",
-                    tuple(words[0] for words in names if words),
-                    len(match.group("dots")),
-                    line,
-                    column,
-                    column > 1,
-                    conditions,
-                )
-            )
+            given, dots = tuple(words[0] for words in names if words), len(match.group("dots"))
+            imports.append(Import(match.group("module") or "", given, dots, line, column, column > 1, conditions))
     return tuple(imports)

@@ -191,8 +191,8 @@ class _Module:
             self.block([*node.body, *node.orelse], scope, conditions)
         elif isinstance(node, ast.While):
             self.block([*node.body, *node.orelse], scope, conditions)
-        elif node.__class__.__name__ == "Match":
-            for case in getattr(node, "cases", ()):
+        elif isinstance(node, ast.Match):
+            for case in node.cases:
                 self.block(case.body, scope, (*conditions, Condition("python", "match")))
         elif node.__class__.__name__ == "TypeAlias":
             target = getattr(node, "name", None)
@@ -457,9 +457,7 @@ class _Module:
             self.open.append(("", "globals().update()"))
 
 
-_INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem) + (
-    (ast.match_case,) if hasattr(ast, "match_case") else ()
-)
+_INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
 
 
 def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:
