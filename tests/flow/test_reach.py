@@ -37,7 +37,8 @@ def test_a_chain_is_walked_with_its_path():
     reached = DownstreamSearch(CHAIN).from_sent([("/scan", "publisher")])
     assert [each.node for each in reached] == ["filter", "planner", "mover"]
     assert [step.name for step in reached[-1].steps] == ["/scan", "/clean", "/plan"]
-    assert [each.node for each in DownstreamSearch(CHAIN).from_sent([("/clean", "publisher")], "filter")] == ["planner", "mover"]
+    further = DownstreamSearch(CHAIN).from_sent([("/clean", "publisher")], "filter")
+    assert [each.node for each in further] == ["planner", "mover"]
 
 
 def test_what_another_callback_publishes_is_not_reached():

@@ -17,7 +17,7 @@ from ..condition import Condition
 from .flow_clean import cleaned, cleaned_further
 from .flow_grammar import DECLARED_TYPES, ERROR, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
 from .lexical import Scan, beginning_lines, scan, standing, text_of
-from .names import without_templates
+from .names import joined, without_templates
 from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
 
 _LEAVES = kinds("identifier", "field_identifier", "type_identifier", "namespace_identifier")
@@ -760,7 +760,7 @@ class _Declarations:
             number = node.kind_id
             if number == KIND.namespace_definition:
                 name = node.child_by_field_name("name")
-                inner = _joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
+                inner = joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
                 self.added[inner] = None
                 body = node.child_by_field_name("body")
                 if body is not None:
@@ -824,7 +824,7 @@ class _Declarations:
                 continue
             written = without_templates(code._of(name))
             outer, _, last = written.removeprefix("::").rpartition("::")
-            around = _joined(scope, outer) if outer else scope
+            around = joined(scope, outer) if outer else scope
             if function is not None:
                 inner = set(traits)
                 result = type_ + marks
@@ -881,7 +881,7 @@ class _Declarations:
                 self._among(body.named_children, scope, members, ())
             return
         written = code._of(name)
-        full = _joined(scope, without_templates(written))
+        full = joined(scope, without_templates(written))
         if body is None:
             if node.parent is None or node.parent.kind_id not in (KIND.declaration, KIND.field_declaration) or not (
                 node.parent.children_by_field_name("declarator")
@@ -911,7 +911,7 @@ class _Declarations:
         full = scope
         if name is not None:
             last = without_templates(code._of(name))
-            full = _joined(scope, last)
+            full = joined(scope, last)
             self._add(members, Declaration("type", last, scope, name.start_byte))
         for each in body.named_children if body is not None else ():
             inner = each.child_by_field_name("name")
@@ -945,7 +945,3 @@ class _Declarations:
             self.opened.append((scope, "".join(full.removeprefix("namespace").split()).removeprefix("::")))
         else:
             self.using.append((scope, without_templates(full.removeprefix("typename")).removeprefix("::")))
-
-
-def _joined(scope: str, name: str) -> str:
-    return f"{scope}::{name}" if scope and name else scope or name

@@ -21,6 +21,7 @@ from .flow_grammar import DECLARATORS, DECLARED_TYPES, EQUALS, ERROR, KIND, NAME
 from .flow_statements import PREPROC, SEMICOLON, CppStatements
 from .flow_values import READ, bare, flat
 from .lexical import EXPORTING, beginning_lines, exports_of, scan
+from .names import joined
 
 INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
@@ -442,10 +443,6 @@ class _File(CppStatements):
         """Macros and other statements outside of functions."""
         self.go_outside(owner)
         self.statement(node, self.guarded(conditions))
-
-
-def joined(scope: str, name: str) -> str:
-    return f"{scope}::{name}" if scope and name else scope or name
 
 
 def _is_number(text: str) -> bool:

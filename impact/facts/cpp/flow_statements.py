@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Callable
 from typing import NamedTuple
 
 from tree_sitter import Node
@@ -16,7 +17,7 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import ASSERTS, DECLARED_TYPES, ERROR, KIND, NEVER_RETURNS, grammatical, kind, listed_in
+from .flow_grammar import ASSERTS, DECLARED_TYPES, ERROR, KIND, NEVER_RETURNS, grammatical, kind, kinds, listed_in
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
@@ -477,12 +478,6 @@ class CppStatements(Declarations):
                 self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
         return JUMPS
 
-    def jump(self, node: Node, guard: int) -> Leaving:
-        return JUMPS
-
-    def broken(self, node: Node, guard: int) -> Leaving:
-        return BREAKS
-
     def thrown_(self, node: Node, guard: int) -> Leaving:
         self.anything(node, guard, ESCAPE, "")
         return JUMPS
@@ -597,14 +592,11 @@ class CppStatements(Declarations):
         self.local_name(node)
         return STAYS
 
-    def nothing(self, node: Node, guard: int) -> Leaving:
-        return STAYS
-
 
 LEFT_ROUND = kind("(", False)
 RIGHT_ROUND = kind(")", False)
 PREPROC = frozenset((KIND.preproc_if, KIND.preproc_ifdef))
-STATEMENTS = {
+STATEMENTS: dict[int, Callable[..., Leaving]] = {
     KIND.compound_statement: CppStatements.block,
     KIND.expression_statement: CppStatements.expression,
     KIND.if_statement: CppStatements.if_,
@@ -616,26 +608,23 @@ STATEMENTS = {
     KIND.try_statement: CppStatements.try_,
     KIND.return_statement: CppStatements.returned,
     KIND.co_return_statement: CppStatements.returned,
-    KIND.continue_statement: CppStatements.jump,
-    KIND.break_statement: CppStatements.broken,
-    KIND.goto_statement: CppStatements.jump,
+    KIND.continue_statement: lambda *_: JUMPS,
+    KIND.break_statement: lambda *_: BREAKS,
+    KIND.goto_statement: lambda *_: JUMPS,
     KIND.throw_statement: CppStatements.thrown_,
     KIND.labeled_statement: CppStatements.labeled,
     KIND.function_definition: CppStatements.macro_block,
     KIND.preproc_if: CppStatements.preprocessor,
     KIND.preproc_ifdef: CppStatements.preprocessor,
     ERROR: CppStatements.unknown,
-    KIND.comment: CppStatements.nothing,
-    **{
-        kind(name): CppStatements.named
-        for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")
-    },
-    **{number: CppStatements.local for number in DECLARED_TYPES},
-    **{
-        kind(name): CppStatements.nothing
-        for name in (
-            "preproc_def", "preproc_function_def", "preproc_call", "preproc_include", "static_assert_declaration",
-            "access_specifier",
-        )
-    },
+    **dict.fromkeys(DECLARED_TYPES, CppStatements.local),
+    **dict.fromkeys(
+        kinds("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition"),
+        CppStatements.named,
+    ),
+    **dict.fromkeys(
+        kinds("comment", "preproc_def", "preproc_function_def", "preproc_call", "preproc_include",
+              "static_assert_declaration", "access_specifier"),
+        lambda *_: STAYS,
+    ),
 }  # fmt: skip

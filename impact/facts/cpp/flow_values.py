@@ -175,9 +175,6 @@ class FunctionReader:
     def number(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
-    def this(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
-        return FlowExpr("name", "this")
-
     def string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
@@ -214,15 +211,6 @@ class FunctionReader:
         return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
 
     def field(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
-        start = node.start_byte
-        plain = _PLAIN.fullmatch(self.text, start, node.end_byte)
-        if plain is not None:
-            path = plain[0].replace("->", ".")
-            if plain[1] is None and plain[2] in self.known:
-                self.accesses.append(
-                    Access(path, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
-                )
-            return FlowExpr("name", path)
         path, local = self.path(node, guard)
         if local:
             self.touch(path, node, guard, position)
@@ -240,15 +228,13 @@ class FunctionReader:
             name = self.text[node.start_byte : node.end_byte]
             return name, name in self.known
         if number == KIND.field_expression:
-            plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
+            plain = self.plain(node)
             if plain is not None:
-                return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
+                return plain
             children = grammatical(node)
             path, local = self.path(children[0], guard)
             return f"{path}.{self.member(children[-1])}", local
-        if number == KIND.this:
-            return "this", False
-        if number == KIND.qualified_identifier:
+        if number in (KIND.this, KIND.qualified_identifier):
             return bare(self.text[node.start_byte : node.end_byte]), False
         if number in (KIND.parenthesized_expression, KIND.pointer_expression, KIND.cast_expression):
             children = grammatical(node)
@@ -303,11 +289,7 @@ class FunctionReader:
     def receiver(self, node: Node) -> str:
         """What a method is called on, as a path; nothing is noted."""
         number = node.kind_id
-        if number == KIND.this:
-            return "this"
-        if number == KIND.identifier:
-            return self.text[node.start_byte : node.end_byte]
-        if number == KIND.qualified_identifier:
+        if number in (KIND.this, KIND.identifier, KIND.qualified_identifier):
             return bare(self.text[node.start_byte : node.end_byte])
         if number == KIND.field_expression:
             plain = self.plain(node)
@@ -343,6 +325,12 @@ class FunctionReader:
             node = node.children[-1]
         return bare(self.text[node.start_byte : node.end_byte])
 
+    def templated(self, node: Node) -> tuple[str, str]:
+        """The name and the arguments of a template, as written."""
+        name, written = node.children[0], node.children[-1]
+        types = flat(self.text[written.start_byte + 1 : written.end_byte - 1])
+        return self.text[name.start_byte : name.end_byte], types
+
     def call(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
@@ -375,9 +363,7 @@ class FunctionReader:
                     member = member.children[-1]
                 at = member.start_byte
                 if member.kind_id == KIND.template_method:
-                    name, written = member.children[0], member.children[-1]
-                    method = text[name.start_byte : name.end_byte]
-                    types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+                    method, types = self.templated(member)
                 else:
                     method = self.member(member)
                 receiver, local = self.path(parts[0], guard)
@@ -393,13 +379,10 @@ class FunctionReader:
             if name.kind_id == KIND.dependent_name:
                 name = name.children[-1]
             if name.kind_id in (KIND.template_function, KIND.template_method):
-                written = name.children[-1]
-                types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+                _, types = self.templated(name)
             callee = bare(callee)
         elif number == KIND.template_function:
-            name, written = function.children[0], function.children[-1]
-            callee = text[name.start_byte : name.end_byte]
-            types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+            callee, types = self.templated(function)
         else:
             callee, local = self.path(function, guard)
             if local:
@@ -688,7 +671,7 @@ VALUES = _Readers(
         KIND.qualified_identifier: FunctionReader.qualified,
         KIND.template_function: FunctionReader.qualified,
         KIND.field_expression: FunctionReader.field,
-        KIND.this: FunctionReader.this,
+        KIND.this: FunctionReader.qualified,
         KIND.call_expression: FunctionReader.call,
         KIND.subscript_expression: FunctionReader.subscript,
         KIND.parenthesized_expression: FunctionReader.parenthesized,

@@ -192,13 +192,10 @@ class Walker:
         self.returns.append((tuple(self.conditions[self.base :]), value))
         return True
 
-    def run_Raise(self, statement: ast.Raise) -> bool:
-        return True
-
     def run_Break(self, statement: ast.stmt) -> bool:
         return True
 
-    run_Continue = run_Break
+    run_Continue = run_Raise = run_Break
 
     def run_If(self, statement: ast.If) -> bool | ActionCondition | None:
         decided = self.truth(statement.test)

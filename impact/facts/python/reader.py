@@ -59,6 +59,11 @@ _IN_STRING = re.compile(
     r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"
     r"|\$\((?:find|find-pkg-share|find-pkg-prefix)\s+(?P<find>[A-Za-z][\w-]*)\)(?P<find_path>/[^\s'\"<>$%{}()]+)?"
 )
+# What statements and expressions need that are read like any other: the minor version of Python 3, and what it is.
+_NEEDED = {
+    "TemplateStr": (14, "t-string"), "TypeAlias": (12, "type alias statement"), "Nonlocal": (0, "nonlocal"),
+    "YieldFrom": (3, "yield from"),
+}  # fmt: skip
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
 _CHILDREN = child_fields(
@@ -149,7 +154,7 @@ class PythonReader(ObjectUses, SourceText):
         column = super().column(line, offset)
         return max(1, column - len(self.lines[line - 1]) + len(self.original[line - 1])) if self.original else column
 
-    def need(self, minor: int, node, reason: str) -> None:
+    def need(self, minor: int, reason: str, node) -> None:
         if self.needs is None or minor > self.needs[0]:
             self.needs = (minor, node.lineno, reason)
 
@@ -383,7 +388,7 @@ class PythonReader(ObjectUses, SourceText):
         self.block(node.finalbody)
 
     def visit_TryStar(self, node) -> None:
-        self.need(11, node, "`except*`")
+        self.need(11, "`except*`", node)
         self.visit_Try(node)
 
     def visit_With(self, node) -> None:
@@ -396,7 +401,7 @@ class PythonReader(ObjectUses, SourceText):
             if item.optional_vars is not None:
                 self.visit(item.optional_vars)
         if self.parenthesised(node):
-            self.need(9, node, "parenthesised context managers")
+            self.need(9, "parenthesised context managers", node)
         if suppressed:
             self.under(node.body, TRY, TRY)
             self.merge(len(self.ways) - 1, self.scope.objects)
@@ -433,15 +438,15 @@ class PythonReader(ObjectUses, SourceText):
             self.visit(decorator)
         arguments = node.args
         if arguments.posonlyargs:
-            self.need(8, node, "positional-only parameters")
+            self.need(8, "positional-only parameters", node)
         elif arguments.kwonlyargs:
-            self.need(0, node, "keyword-only parameters")
+            self.need(0, "keyword-only parameters", node)
         if getattr(node, "type_params", None):
-            self.need(12, node, "type parameters")
+            self.need(12, "type parameters", node)
             self.block(node.type_params)
         self.arguments(arguments)
         if node.returns is not None:
-            self.need(0, node, "annotations")
+            self.need(0, "annotations", node)
             self.visit(node.returns)
         before = self.scope, self.function, self.defining, self.lazy, self.me
         self.defining = (self.scope, node.name)
@@ -465,7 +470,7 @@ class PythonReader(ObjectUses, SourceText):
         self.scope, self.function, self.defining, self.lazy, self.me = before
 
     def visit_AsyncFunctionDef(self, node) -> None:
-        self.need(5, node, "async functions")
+        self.need(5, "async functions", node)
         self.visit_FunctionDef(node)
 
     def arguments(self, arguments: ast.arguments) -> None:
@@ -475,7 +480,7 @@ class PythonReader(ObjectUses, SourceText):
         for group in (arguments.posonlyargs, arguments.args, arguments.kwonlyargs):
             for argument in group:
                 if argument.annotation is not None:
-                    self.need(0, argument, "annotations")
+                    self.need(0, "annotations", argument)
                     self.visit(argument.annotation)
 
     def parameters(self, arguments: ast.arguments) -> None:
@@ -503,7 +508,7 @@ class PythonReader(ObjectUses, SourceText):
         for keyword in node.keywords:
             self.visit(keyword.value)
         if getattr(node, "type_params", None):
-            self.need(12, node, "type parameters")
+            self.need(12, "type parameters", node)
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
         self.scope = PythonScope(self.scope, True)
@@ -525,7 +530,7 @@ class PythonReader(ObjectUses, SourceText):
                 self.visit(target)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
-        self.need(6, node, "variable annotations")
+        self.need(6, "variable annotations", node)
         self.visit(node.annotation)
         if node.value is not None:
             self.visit(node.value)
@@ -551,13 +556,13 @@ class PythonReader(ObjectUses, SourceText):
             self.hold(name, annotated or self.type_of(node))
 
     def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
-        self.need(8, node, "assignment expression")
+        self.need(8, "assignment expression", node)
         self.visit(node.value)
         self.visit(node.target)
         self.hold(node.target.id, self.type_of(node.value))
 
     def visit_Match(self, node) -> None:
-        self.need(10, node, "match statement")
+        self.need(10, "match statement", node)
         self.visit(node.subject)
         first = len(self.ways)
         for case in node.cases:
@@ -565,23 +570,14 @@ class PythonReader(ObjectUses, SourceText):
         self.merge(first, self.scope.objects)
 
     def visit_TemplateStr(self, node) -> None:
-        self.need(14, node, "t-string")
+        self.need(*_NEEDED[node.__class__.__name__], node)
         self.inside(node)
 
-    def visit_TypeAlias(self, node) -> None:
-        self.need(12, node, "type alias statement")
-        self.inside(node)
-
-    def visit_Nonlocal(self, node: ast.Nonlocal) -> None:
-        self.need(0, node, "nonlocal")
-
-    def visit_YieldFrom(self, node: ast.YieldFrom) -> None:
-        self.need(3, node, "yield from")
-        self.visit(node.value)
+    visit_TypeAlias = visit_Nonlocal = visit_YieldFrom = visit_TemplateStr
 
     def visit_Raise(self, node: ast.Raise) -> None:
         if node.cause is not None:
-            self.need(0, node, "raise from")
+            self.need(0, "raise from", node)
         self.inside(node)
 
     # Mentions
@@ -614,14 +610,14 @@ class PythonReader(ObjectUses, SourceText):
         if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
             self.path(node)
         elif node.op.__class__ is ast.MatMult:
-            self.need(5, node, "`@` operator")
+            self.need(5, "`@` operator", node)
         elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
             self.python2_only.append(Problem(node.lineno, "print statement"))
         self.visit(node.left)
         self.visit(node.right)
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        self.need(6, node, "f-string")
+        self.need(6, "f-string", node)
         if sys.version_info >= (3, 12):
             self.quotes(node)
         self.path(node)
@@ -639,7 +635,7 @@ class PythonReader(ObjectUses, SourceText):
             if isinstance(value, ast.FormattedValue):
                 expression = self.source(value.value)
                 if match.group(1) in expression or "\\" in expression:
-                    self.need(12, node, "quotes or backslash inside an f-string")
+                    self.need(12, "quotes or backslash inside an f-string", node)
 
     def visit_List(self, node) -> None:
         if len(node.elts) > 1:
