@@ -15,7 +15,7 @@ from tree_sitter import Node
 
 from ..condition import Condition
 from .flow_clean import cleaned, cleaned_further
-from .flow_grammar import DECLARED_TYPES, ERROR, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
+from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
 from .lexical import Scan, beginning_lines, scan, standing, text_of
 from .names import joined, without_templates
 from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
@@ -726,7 +726,7 @@ def _errors(root: Node) -> int:
     found, waiting = 0, [root] if root.has_error else []
     while waiting:
         node = waiting.pop()
-        if node.kind_id == ERROR:
+        if node.kind_id == KIND.ERROR:
             found += 1
         elif node.has_error:
             waiting += node.children
@@ -794,7 +794,7 @@ class _Declarations:
                 name = node.child_by_field_name("name")
                 if name is not None:
                     self.macros.append(self.code._of(name))
-            elif number in (ERROR, KIND.declaration_list):
+            elif number in (KIND.ERROR, KIND.declaration_list):
                 self._among(node.named_children, scope, members, template)
 
     def _add(self, members: dict[str, list[Declaration]] | None, one: Declaration) -> None:
@@ -895,7 +895,7 @@ class _Declarations:
         inside: dict[str, list[Declaration]] = {}
         place = len(self.classes)
         self._among(body.named_children, full, inside, ())
-        open_ = any(child.kind_id == ERROR or child.is_missing for child in body.children) or any(
+        open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
             each.type.isupper() for those in inside.values() for each in those
         )
         one = CppClass(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)

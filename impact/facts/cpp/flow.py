@@ -17,8 +17,8 @@ from tree_sitter import Node
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
 from .flow_clean import Cleaned, cleaned, cleaned_further
-from .flow_grammar import DECLARATORS, DECLARED_TYPES, EQUALS, ERROR, KIND, NAMES, PARSER, TYPES, grammatical, listed_in
-from .flow_statements import PREPROC, SEMICOLON, CppStatements
+from .flow_grammar import DECLARATORS, DECLARED_TYPES, KIND, NAMES, PARSER, TYPES, grammatical, listed_in, node_readers
+from .flow_statements import CppStatements
 from .flow_values import READ, bare, flat
 from .lexical import EXPORTING, beginning_lines, exports_of, scan
 from .names import joined
@@ -75,7 +75,7 @@ def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
     while waiting:
         node = waiting.pop()
         # A semicolon after a macro is often missing, and nothing is lost by it.
-        if node.kind_id == ERROR or (node.is_missing and node.kind_id != SEMICOLON):
+        if node.kind_id == KIND.ERROR or (node.is_missing and node.kind_id != KIND.semicolon):
             found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
         elif node.has_error:
             waiting += node.children
@@ -120,7 +120,7 @@ class _File(CppStatements):
             if read is not None:
                 read(self, child, name, owner, conditions)
 
-    def namespace(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_namespace_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         body = node.child_by_field_name("body")
         if body is None:
@@ -131,10 +131,12 @@ class _File(CppStatements):
             self.namespaces.add(inner)
         self.scope(body.children, inner, "", conditions)
 
-    def descend(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_linkage_specification(self, node: Node, name: str, owner: str, conditions) -> None:
         self.scope(node.children, name, owner, conditions)
 
-    def template(self, node: Node, name: str, owner: str, conditions) -> None:
+    scope_declaration_list = scope_template_instantiation = scope_friend_declaration = scope_linkage_specification
+
+    def scope_template_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         before, parameters = self.types, node.child_by_field_name("parameters")
         self.types = tuple(map(self.type_parameter, parameters.named_children)) if parameters is not None else ()
         self.scope(node.children, name, owner, conditions)
@@ -149,7 +151,7 @@ class _File(CppStatements):
         )
         return self.said(named) if named is not None else ""
 
-    def unparsed(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_ERROR(self, node: Node, name: str, owner: str, conditions) -> None:
         """What did not parse: whatever is a whole piece in it is read."""
         for child in node.children:
             read = SCOPED.get(child.kind_id)
@@ -159,7 +161,7 @@ class _File(CppStatements):
                 self.go_outside(owner)
                 self.statement(child, -1)
 
-    def preprocessed(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
         asked, statements, rest = self.branch(node)
         if not rest and not owner and asked.startswith("!(defined(") and guards_file(node, statements):
             self.scope(statements, name, owner, conditions)
@@ -173,26 +175,28 @@ class _File(CppStatements):
             inner = (*conditions, (asked, line)) if asked else conditions
             self.scope(statements, name, owner, inner)
 
+    scope_preproc_ifdef = scope_preproc_if
+
     # Names
 
-    def alias(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_alias_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         target = node.child_by_field_name("type")
         if said is not None and target is not None:
             self.aliases.append(Alias(self.said(said), self.said(target), name))
 
-    def typedef(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_type_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         target = self.written_type(children)
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.class_(child, name, owner, conditions)
+                self.scope_class_specifier(child, name, owner, conditions)
         for child in node.children_by_field_name("declarator"):
             said, marks = self.declared(child)
             if said is not None:
                 self.aliases.append(Alias(self.said(said), target + marks, name))
 
-    def using(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_using_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         target = next((child for child in children if child.kind_id in NAMES), None)
         if target is None:
@@ -203,12 +207,12 @@ class _File(CppStatements):
         else:
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
-    def namespace_alias(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         if len(children) >= 4:
             self.aliases.append(Alias(self.said(children[1]), bare(self.said(children[3])), name))
 
-    def define(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_preproc_def(self, node: Node, name: str, owner: str, conditions) -> None:
         children = node.children
         if len(children) < 3:
             return
@@ -224,7 +228,7 @@ class _File(CppStatements):
 
     # Variables and members
 
-    def declared_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         """A declaration outside of functions: variables; what declares functions tells only their names."""
         self.go_outside(owner)
         base = self.guarded(conditions)
@@ -232,7 +236,7 @@ class _File(CppStatements):
         type_ = ""
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.class_(child, name, owner, conditions)
+                self.scope_class_specifier(child, name, owner, conditions)
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
@@ -242,6 +246,8 @@ class _File(CppStatements):
                 type_, typed = self.written_type(children), True
             self.go_outside(owner)
             self.variable(node, child, index, type_, name, owner, base)
+
+    scope_field_declaration = scope_declaration
 
     def variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
         said, marks = self.declared(child)
@@ -260,14 +266,14 @@ class _File(CppStatements):
             given = child.children[-1]
         elif index + 1 < len(children):
             beside = children[index + 1]
-            if beside.kind_id == EQUALS and index + 2 < len(children):
+            if beside.kind_id == KIND.equals_sign and index + 2 < len(children):
                 given = children[index + 2]
             elif beside.kind_id == KIND.initializer_list:
                 given = beside
         if given is not None:
             before = given.prev_sibling
             direct = given.kind_id == KIND.argument_list or (
-                given.kind_id == KIND.initializer_list and before is not None and before.kind_id != EQUALS
+                given.kind_id == KIND.initializer_list and before is not None and before.kind_id != KIND.equals_sign
             )
             if direct:
                 inner = listed_in(given)
@@ -308,7 +314,7 @@ class _File(CppStatements):
     members: list[DataMember]
     methods: list[str]
 
-    def class_(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
         if body is None or node.kind_id == KIND.enum_specifier:
@@ -333,8 +339,10 @@ class _File(CppStatements):
         found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
         self.classes.append(found)
 
+    scope_struct_specifier = scope_union_specifier = scope_enum_specifier = scope_class_specifier
+
     def local_type(self, node: Node) -> None:
-        self.class_(node, self.name or self.owner, "", ())
+        self.scope_class_specifier(node, self.name or self.owner, "", ())
 
     def local_name(self, node: Node) -> None:
         SCOPED[node.kind_id](self, node, self.name, "", ())
@@ -344,7 +352,7 @@ class _File(CppStatements):
 
     # Functions
 
-    def function(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         """A function with its body."""
         declarator: Node | None = None
         body: Node | None = None
@@ -363,7 +371,7 @@ class _File(CppStatements):
             elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
                 declarator = child
             elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
-                self.class_(child, name, owner, conditions)
+                self.scope_class_specifier(child, name, owner, conditions)
         while declarator is not None and declarator.kind_id in (KIND.pointer_declarator, KIND.reference_declarator):
             mark = declarator.children[0]
             marks += self.text[mark.start_byte : mark.end_byte]
@@ -439,7 +447,7 @@ class _File(CppStatements):
                 value = FlowExpr("make", "", self.arguments(given, guard, target) if inner else ())
             self.assignments.append(Assignment(target, value, self.line(child), guard))
 
-    def statement_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
         """Macros and other statements outside of functions."""
         self.go_outside(owner)
         self.statement(node, self.guarded(conditions))
@@ -461,23 +469,4 @@ def guards_file(node: Node, statements: list[Node]) -> bool:
     return asked.text == defined.text
 
 
-SCOPED = {
-    KIND.namespace_definition: _File.namespace,
-    KIND.linkage_specification: _File.descend,
-    KIND.declaration_list: _File.descend,
-    KIND.template_declaration: _File.template,
-    KIND.template_instantiation: _File.descend,
-    KIND.friend_declaration: _File.descend,
-    KIND.function_definition: _File.function,
-    KIND.declaration: _File.declared_outside,
-    KIND.field_declaration: _File.declared_outside,
-    KIND.alias_declaration: _File.alias,
-    KIND.type_definition: _File.typedef,
-    KIND.using_declaration: _File.using,
-    KIND.namespace_alias_definition: _File.namespace_alias,
-    KIND.preproc_def: _File.define,
-    KIND.expression_statement: _File.statement_outside,
-    ERROR: _File.unparsed,
-    **{number: _File.preprocessed for number in PREPROC},
-    **{number: _File.class_ for number in DECLARED_TYPES},
-}  # fmt: skip
+SCOPED = node_readers(_File, "scope_")

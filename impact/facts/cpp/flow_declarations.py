@@ -7,7 +7,17 @@ from bisect import bisect_right
 from tree_sitter import Node
 
 from ..flow import Assignment, FlowCall, FlowExpr, FlowFunction, FlowParameter
-from .flow_grammar import DECLARATORS, DECLARED_TYPES, EQUALS, KIND, NAMES, PARAMETERS, TYPES, grammatical, listed_in
+from .flow_grammar import (
+    DECLARATORS,
+    DECLARED_TYPES,
+    KIND,
+    NAMES,
+    PARAMETERS,
+    TYPES,
+    grammatical,
+    listed_in,
+    node_readers,
+)
 from .flow_values import READ, VALUES, FunctionReader, Position, bare, flat
 
 
@@ -51,7 +61,7 @@ class Declarations(FunctionReader):
                 return None, marks
         return None, marks
 
-    def declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """Local variables."""
         children = node.children
         kind_ = ""
@@ -72,7 +82,7 @@ class Declarations(FunctionReader):
                 if number == KIND.reference_declarator and self.called_after(child, guard, kind_):
                     continue
                 given = children[index + 1] if index + 1 < len(children) else None
-                if given is not None and given.kind_id == EQUALS and index + 2 < len(children):
+                if given is not None and given.kind_id == KIND.equals_sign and index + 2 < len(children):
                     # `if (auto x = f())` has no init_declarator.
                     value = self.kept(child, children[index + 2], guard, kind_)
                     break
@@ -99,7 +109,7 @@ class Declarations(FunctionReader):
 
     def initialised(self, node: Node, guard: int, kind_: str) -> FlowExpr:
         children = node.children
-        if len(children) == 3 and children[1].kind_id == EQUALS:
+        if len(children) == 3 and children[1].kind_id == KIND.equals_sign:
             return self.kept(children[0], children[2], guard, kind_)
         children = grammatical(node)
         if len(children) == 3:
@@ -228,7 +238,7 @@ class Declarations(FunctionReader):
             typed = False
             for index, part in enumerate(children):
                 kind_ = part.kind_id
-                if kind_ == EQUALS:
+                if kind_ == KIND.equals_sign:
                     end = part.start_byte
                     if index + 1 < len(children):
                         default = self.value(children[index + 1], guard)
@@ -250,7 +260,7 @@ class Declarations(FunctionReader):
             result.append(FlowParameter(said, flat(written), default))
         return tuple(result)
 
-    def lambda_(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_lambda_expression(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
         line, column = self.place(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
@@ -305,4 +315,4 @@ class Declarations(FunctionReader):
         raise NotImplementedError
 
 
-VALUES.update({KIND.lambda_expression: Declarations.lambda_, KIND.declaration: Declarations.declaration})
+VALUES.update(node_readers(Declarations, "value_"))

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import lru_cache
 from types import SimpleNamespace
+from typing import Any
 
 import tree_sitter_cpp
 from tree_sitter import Language, Node, Parser
+
+from ....edges.dispatch import methods_of
 
 LANGUAGE = Language(tree_sitter_cpp.language())
 PARSER = Parser(LANGUAGE)
@@ -15,7 +19,7 @@ PARSER = Parser(LANGUAGE)
 
 def kind(name: str, named: bool = True) -> int:
     """The number of a kind of node."""
-    number = LANGUAGE.id_for_node_kind(name, named)
+    number = LANGUAGE.id_for_node_kind(name, named) or (65535 if name == "ERROR" else None)
     if number is None:
         raise ValueError(f"the grammar knows no {name}")
     return number
@@ -26,18 +30,27 @@ def kinds(*names: str) -> frozenset[int]:
     return frozenset(map(kind, names))
 
 
+def node_readers(cls: type, prefix: str) -> dict[int, Callable[..., Any]]:
+    """The methods of a class by the kind of node that stands behind a prefix in their names."""
+    return {kind(name): method for name, method in methods_of(cls, prefix).items()}
+
+
 _NODE_NAMES = map(LANGUAGE.node_kind_for_id, range(LANGUAGE.node_kind_count))
-KIND = SimpleNamespace(**{name: kind(name) for name in _NODE_NAMES if name and LANGUAGE.id_for_node_kind(name, True)})
-"""The number of each kind of node by its name in the grammar: `KIND.call_expression`."""
-ERROR = LANGUAGE.id_for_node_kind("ERROR", True) or 65535
+_KINDS = {name: kind(name) for name in _NODE_NAMES if name and LANGUAGE.id_for_node_kind(name, True)}
+_TOKENS = {"equals_sign": "=", "semicolon": ";", "colon": ":", "opening": "(", "closing": ")", "case_word": "case"}
+KIND = SimpleNamespace(**_KINDS, ERROR=kind("ERROR"), **{name: kind(sign, False) for name, sign in _TOKENS.items()})
+"""The number of each kind of node by its name in the grammar, `KIND.call_expression`, and of some signs."""
 LISTS = (KIND.argument_list, KIND.initializer_list)
+LITERALS = kinds(
+    "true", "false", "null", "number_literal", "char_literal", "string_literal", "raw_string_literal",
+    "concatenated_string",
+)  # fmt: skip
 DECLARED_TYPES = kinds("class_specifier", "struct_specifier", "union_specifier", "enum_specifier")
 NAMES = kinds(
     "identifier", "field_identifier", "qualified_identifier", "destructor_name", "operator_name", "operator_cast",
     "type_identifier", "template_function", "template_method", "namespace_identifier",
 )  # fmt: skip
 PARAMETERS = kinds("parameter_declaration", "optional_parameter_declaration", "variadic_parameter_declaration")
-EQUALS = kind("=", False)
 DECLARATORS = NAMES | kinds(
     "function_declarator", "pointer_declarator", "reference_declarator", "array_declarator", "init_declarator",
     "parenthesized_declarator", "structured_binding_declarator", "variadic_declarator", "attributed_declarator",

@@ -17,7 +17,7 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import ASSERTS, DECLARED_TYPES, ERROR, KIND, NEVER_RETURNS, grammatical, kind, kinds, listed_in
+from .flow_grammar import ASSERTS, KIND, NEVER_RETURNS, grammatical, kinds, listed_in, node_readers
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
@@ -35,9 +35,6 @@ JUMPS = 1
 BREAKS = 2
 Leaving = int | tuple[FlowCondition, ...]
 
-SEMICOLON = kind(";", False)
-COLON = kind(":", False)
-CASE_WORD = kind("case", False)
 ALTERNATIVES = (KIND.preproc_else, KIND.preproc_elif, KIND.preproc_elifdef)
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -91,7 +88,7 @@ class CppStatements(Declarations):
         if value is not None:
             value(self, node, guard, READ, "")
         elif node.child_count:
-            return self.block(node, guard)
+            return self.read_compound_statement(node, guard)
         return STAYS
 
     def regional(self, regions: Regions, node: Node, guard: int) -> int:
@@ -104,7 +101,7 @@ class CppStatements(Declarations):
             guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
 
-    def block(self, node: Node, guard: int) -> Leaving:
+    def read_compound_statement(self, node: Node, guard: int) -> Leaving:
         return self.sequence(node.named_children, guard)
 
     def sequence(self, children: list[Node], guard: int) -> Leaving:
@@ -190,7 +187,7 @@ class CppStatements(Declarations):
             return ""
         return self.outer_text(children[-1])
 
-    def if_(self, node: Node, guard: int) -> Leaving:
+    def read_if_statement(self, node: Node, guard: int) -> Leaving:
         """An if with its chain of else-ifs, which is walked along since it is a deep tree."""
         branches: list[tuple[FlowCondition, Leaving]] = []
         last: Leaving = STAYS
@@ -254,7 +251,7 @@ class CppStatements(Declarations):
 
     # Loops
 
-    def while_(self, node: Node, guard: int) -> Leaving:
+    def read_while_statement(self, node: Node, guard: int) -> Leaving:
         asked: Node | None = None
         for child in node.children:
             if child.kind_id == KIND.condition_clause:
@@ -265,7 +262,7 @@ class CppStatements(Declarations):
                 return STAYS
         return STAYS
 
-    def for_(self, node: Node, guard: int) -> Leaving:
+    def read_for_statement(self, node: Node, guard: int) -> Leaving:
         children = grammatical(node)
         semicolons = 0
         text = ""
@@ -274,10 +271,10 @@ class CppStatements(Declarations):
         closed = False
         for child in children:
             number = child.kind_id
-            if number == SEMICOLON:
+            if number == KIND.semicolon:
                 semicolons += 1
             elif not child.is_named:
-                closed = closed or child.kind_id == RIGHT_ROUND
+                closed = closed or child.kind_id == KIND.closing
             elif closed:
                 body = child
             elif number in (KIND.declaration, KIND.init_statement):
@@ -297,7 +294,7 @@ class CppStatements(Declarations):
             self.value(child, inner, READ, None)
         return STAYS
 
-    def range_for(self, node: Node, guard: int) -> Leaving:
+    def read_for_range_loop(self, node: Node, guard: int) -> Leaving:
         children = node.children
         declarator = node.child_by_field_name("declarator")
         walked = node.child_by_field_name("right")
@@ -306,8 +303,8 @@ class CppStatements(Declarations):
             return self.sequence(node.named_children, guard)
         container = self.value(walked, guard, READ)
         name, marks = self.declared(declarator)
-        head_end = next((child.start_byte for child in children if child.kind_id == RIGHT_ROUND), walked.end_byte)
-        head = next((child.end_byte for child in children if child.kind_id == LEFT_ROUND), node.start_byte)
+        head_end = next((child.start_byte for child in children if child.kind_id == KIND.closing), walked.end_byte)
+        head = next((child.end_byte for child in children if child.kind_id == KIND.opening), node.start_byte)
         line = self.line(node)
         inner = self.guard("for", flat(self.text[head:head_end]), line, guard)
         if name is not None:
@@ -321,7 +318,7 @@ class CppStatements(Declarations):
         self.statement(body, inner)
         return STAYS
 
-    def do(self, node: Node, guard: int) -> Leaving:
+    def read_do_statement(self, node: Node, guard: int) -> Leaving:
         body = node.child_by_field_name("body")
         asked = node.child_by_field_name("condition")
         if body is None or asked is None:
@@ -336,7 +333,7 @@ class CppStatements(Declarations):
 
     # Switch
 
-    def switch(self, node: Node, guard: int) -> Leaving:
+    def read_switch_statement(self, node: Node, guard: int) -> Leaving:
         asked = next((child for child in node.children if child.kind_id == KIND.condition_clause), None)
         body = node.child_by_field_name("body")
         if asked is None or body is None:
@@ -390,9 +387,9 @@ class CppStatements(Declarations):
 
     def labels(self, case: Node, condition: str | None):
         children = case.children
-        colon = next((index for index, child in enumerate(children) if child.kind_id == COLON), len(children) - 1)
+        colon = next((index for index, child in enumerate(children) if child.kind_id == KIND.colon), len(children) - 1)
         value: str | None = None
-        if children[0].kind_id == CASE_WORD:
+        if children[0].kind_id == KIND.case_word:
             value = flat(self.text[children[0].end_byte : children[colon].start_byte])
         statements: list[Node] = []
         nested: Node | None = None
@@ -440,7 +437,7 @@ class CppStatements(Declarations):
 
     # Exceptions, jumps
 
-    def try_(self, node: Node, guard: int) -> Leaving:
+    def read_try_statement(self, node: Node, guard: int) -> Leaving:
         leaving: Leaving = STAYS
         caught: list[tuple[FlowCondition, Leaving]] = []
         for child in node.children:
@@ -471,18 +468,20 @@ class CppStatements(Declarations):
         )
         return conditions or STAYS
 
-    def returned(self, node: Node, guard: int) -> Leaving:
+    def read_return_statement(self, node: Node, guard: int) -> Leaving:
         for child in node.children:
             if child.is_named and child.kind_id != KIND.comment:
                 value = self.value(child, guard, ESCAPE, RETURN)
                 self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
         return JUMPS
 
-    def thrown_(self, node: Node, guard: int) -> Leaving:
+    read_co_return_statement = read_return_statement
+
+    def read_throw_statement(self, node: Node, guard: int) -> Leaving:
         self.anything(node, guard, ESCAPE, "")
         return JUMPS
 
-    def expression(self, node: Node, guard: int) -> Leaving:
+    def read_expression_statement(self, node: Node, guard: int) -> Leaving:
         child = node.children[0]
         number = child.kind_id
         if number == KIND.comment:
@@ -500,10 +499,10 @@ class CppStatements(Declarations):
             return JUMPS
         return STAYS
 
-    def labeled(self, node: Node, guard: int) -> Leaving:
+    def read_labeled_statement(self, node: Node, guard: int) -> Leaving:
         return self.sequence(node.named_children[1:], guard)
 
-    def macro_block(self, node: Node, guard: int) -> Leaving:
+    def read_function_definition(self, node: Node, guard: int) -> Leaving:
         """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
         children = grammatical(node)
         body = next((child for child in children if child.kind_id == KIND.compound_statement), None)
@@ -549,7 +548,7 @@ class CppStatements(Declarations):
             end = self.text.find("\n", end + 1)
         return flat(self.text[start : end if end >= 0 else len(self.text)].replace("\\\n", " "))
 
-    def preprocessor(self, node: Node, guard: int) -> Leaving:
+    def read_preproc_if(self, node: Node, guard: int) -> Leaving:
         """#if in a function; its branches are walked along."""
         branch: Node | None = node
         asked_before = ""
@@ -577,51 +576,33 @@ class CppStatements(Declarations):
                 break
         return tuple(conditions) or STAYS
 
-    def unknown(self, node: Node, guard: int) -> Leaving:
+    read_preproc_ifdef = read_preproc_if
+
+    def read_ERROR(self, node: Node, guard: int) -> Leaving:
         """What did not parse: its pieces are read all the same, and nothing is concluded from their order."""
         for child in node.children:
             if child.is_named:
                 self.statement(child, guard)
         return STAYS
 
-    def local(self, node: Node, guard: int) -> Leaving:
+    def read_class_specifier(self, node: Node, guard: int) -> Leaving:
         self.local_type(node)
         return STAYS
 
-    def named(self, node: Node, guard: int) -> Leaving:
+    read_struct_specifier = read_union_specifier = read_enum_specifier = read_class_specifier
+
+    def read_alias_declaration(self, node: Node, guard: int) -> Leaving:
         self.local_name(node)
         return STAYS
 
+    read_type_definition = read_using_declaration = read_namespace_alias_definition = read_alias_declaration
 
-LEFT_ROUND = kind("(", False)
-RIGHT_ROUND = kind(")", False)
-PREPROC = frozenset((KIND.preproc_if, KIND.preproc_ifdef))
+
+PREPROC = kinds("preproc_if", "preproc_ifdef")
 STATEMENTS: dict[int, Callable[..., Leaving]] = {
-    KIND.compound_statement: CppStatements.block,
-    KIND.expression_statement: CppStatements.expression,
-    KIND.if_statement: CppStatements.if_,
-    KIND.while_statement: CppStatements.while_,
-    KIND.for_statement: CppStatements.for_,
-    KIND.for_range_loop: CppStatements.range_for,
-    KIND.do_statement: CppStatements.do,
-    KIND.switch_statement: CppStatements.switch,
-    KIND.try_statement: CppStatements.try_,
-    KIND.return_statement: CppStatements.returned,
-    KIND.co_return_statement: CppStatements.returned,
-    KIND.continue_statement: lambda *_: JUMPS,
-    KIND.break_statement: lambda *_: BREAKS,
-    KIND.goto_statement: lambda *_: JUMPS,
-    KIND.throw_statement: CppStatements.thrown_,
-    KIND.labeled_statement: CppStatements.labeled,
-    KIND.function_definition: CppStatements.macro_block,
-    KIND.preproc_if: CppStatements.preprocessor,
-    KIND.preproc_ifdef: CppStatements.preprocessor,
-    ERROR: CppStatements.unknown,
-    **dict.fromkeys(DECLARED_TYPES, CppStatements.local),
-    **dict.fromkeys(
-        kinds("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition"),
-        CppStatements.named,
-    ),
+    **node_readers(CppStatements, "read_"),
+    **dict.fromkeys(kinds("continue_statement", "goto_statement"), lambda *_: JUMPS),
+    **dict.fromkeys(kinds("break_statement"), lambda *_: BREAKS),
     **dict.fromkeys(
         kinds("comment", "preproc_def", "preproc_function_def", "preproc_call", "preproc_include",
               "static_assert_declaration", "access_specifier"),

@@ -23,10 +23,10 @@ from .flow_grammar import (
     BINDS,
     CHANGES,
     ELEMENTS,
-    ERROR,
     JOINING,
     KIND,
     LISTS,
+    LITERALS,
     LOOKS,
     MAKES,
     OPERATORS,
@@ -35,8 +35,8 @@ from .flow_grammar import (
     SILENT,
     THROUGH,
     grammatical,
-    kind,
     listed_in,
+    node_readers,
     noise,
 )
 
@@ -160,10 +160,13 @@ class FunctionReader:
                 self.anything(child, guard, position, None)
         return NOTHING if target is None else self.other(node)
 
-    def skipped(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_comment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.other(node)
 
-    def identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_type_descriptor = value_template_argument_list = value_primitive_type = value_comment
+    value_type_identifier = value_field_identifier = value_comment
+
+    def value_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         start = node.start_byte
         name = self.text[start : node.end_byte]
         if name in self.known:
@@ -172,14 +175,18 @@ class FunctionReader:
             )
         return FlowExpr("name", name)
 
-    def number(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_number_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
-    def string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_true = value_false = value_null = value_char_literal = value_number_literal
+
+    def value_string_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
             return FlowExpr("text", text[1:-1])
         return FlowExpr("text", self.literal(node))
+
+    value_raw_string_literal = value_string_literal
 
     def literal(self, node: Node) -> str:
         """The value of a string literal."""
@@ -192,7 +199,7 @@ class FunctionReader:
             text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
         return text
 
-    def strings(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_concatenated_string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
@@ -207,10 +214,12 @@ class FunctionReader:
             return parts[0]
         return FlowExpr("join", "+", tuple(parts))
 
-    def qualified(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_qualified_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
 
-    def field(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_template_function = value_this = value_qualified_identifier
+
+    def value_field_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         path, local = self.path(node, guard)
         if local:
             self.touch(path, node, guard, position)
@@ -252,7 +261,7 @@ class FunctionReader:
                 method = self.member(function.children[-1])
                 if method in ELEMENTS or method in POINTEES:
                     if method in POINTEES:
-                        self.call(node, guard, READ, "")
+                        self.value_call_expression(node, guard, READ, "")
                         receiver = self.plain(function.children[0])
                         return receiver if receiver is not None else (self.receiver(node), False)
                     path, local = self.path(function.children[0], guard)
@@ -263,7 +272,7 @@ class FunctionReader:
                 arguments = listed_in(children[-1])
                 if len(arguments) == 1 and self.called(node) in THROUGH:
                     return self.path(arguments[0], guard)
-            self.received = self.call(node, guard, ESCAPE, "")
+            self.received = self.value_call_expression(node, guard, ESCAPE, "")
             return self.called(node) + "()", False
         self.received = self.value(node, guard, ESCAPE)
         return "()", False
@@ -331,11 +340,11 @@ class FunctionReader:
         types = flat(self.text[written.start_byte + 1 : written.end_byte - 1])
         return self.text[name.start_byte : name.end_byte], types
 
-    def call(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_call_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
-            children = [child for child in children if child.kind_id not in (KIND.comment, ERROR)]
+            children = [child for child in children if child.kind_id not in (KIND.comment, KIND.ERROR)]
             if len(children) < 2:
                 return self.anything(node, guard, position, target)
         function = children[0]
@@ -450,7 +459,7 @@ class FunctionReader:
                 result.append(VALUES[number](self, child, guard, position, ""))
         return tuple(result)
 
-    def subscript(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_subscript_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         path, local = self.path(children[0], guard)
         index = FlowExpr("other")
@@ -460,13 +469,15 @@ class FunctionReader:
             self.touch(f"{path}.[]", node, guard, position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def parenthesized(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_parenthesized_expression(
+        self, node: Node, guard: int, position: Position, target: str | None
+    ) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
         return self.value(children[1], guard, position, target)
 
-    def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_pointer_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
@@ -479,10 +490,12 @@ class FunctionReader:
                     return FlowExpr("function", name)
         return self.value(inner, guard, position, target)
 
-    def last_child(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_cast_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.value(grammatical(node)[-1], guard, position, target)
 
-    def binary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_initializer_pair = value_co_await_expression = value_cast_expression
+
+    def value_binary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """Operators in a row are walked through, since a long row is a deep tree."""
         operands: list[Node] = []
         signs: list[str] = []
@@ -491,7 +504,7 @@ class FunctionReader:
         while True:
             children = spine.children
             if len(children) != 3:
-                children = [child for child in children if child.kind_id not in (KIND.comment, ERROR)]
+                children = [child for child in children if child.kind_id not in (KIND.comment, KIND.ERROR)]
                 if len(children) != 3:
                     break
             operands.append(children[2])
@@ -528,7 +541,7 @@ class FunctionReader:
                         guard = self.guard(holds, self.outer_text(asked), self.line(asked), guard)
                     pending = []
             if number in LITERALS:
-                read = LITERALS[number](self, operand, guard, READ, "")
+                read = VALUES[number](self, operand, guard, READ, "")
             else:
                 if sign in SAFE or (sign in ("==", "!=") and self.literal_beside(operands, index)):
                     where = READ
@@ -546,14 +559,14 @@ class FunctionReader:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
-    def unary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_unary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = self.value(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
             return FlowExpr("number", "-" + inner.text)
         return NOTHING if target is None else self.other(node)
 
-    def update(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_update_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
         path, local = self.path(operand, guard)
@@ -567,7 +580,7 @@ class FunctionReader:
         self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.line(node), guard, "", sign))
         return FlowExpr("name", path)
 
-    def assignment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_assignment_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
@@ -588,7 +601,7 @@ class FunctionReader:
         inner = listed_in(grammatical(node)[1])
         return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
-    def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_conditional_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 5:
             return self.anything(node, guard, position, target)
@@ -613,7 +626,7 @@ class FunctionReader:
             node = children[1]
         return self.said(node)
 
-    def braces(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_initializer_list(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
             self.anything(node, guard, ESCAPE, "")
             return self.other(node)
@@ -622,7 +635,7 @@ class FunctionReader:
         self.nesting -= 1
         return FlowExpr("list", "", parts)
 
-    def made(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_new_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
         children = grammatical(node)
         kind_ = ""
@@ -638,23 +651,19 @@ class FunctionReader:
             return self.other(node)
         return FlowExpr("make", kind_, parts)
 
-    def thrown(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_compound_literal_expression = value_new_expression
+
+    def value_throw_statement(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.anything(node, guard, ESCAPE, "")
 
-    def asked_only(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_sizeof_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
                 read(self, child, guard, READ, "")
         return self.other(node)
 
-
-LITERALS: dict[int, Callable[..., FlowExpr]] = {
-    **{kind(name): FunctionReader.number for name in ("true", "false", "null", "number_literal", "char_literal")},
-    KIND.string_literal: FunctionReader.string,
-    KIND.raw_string_literal: FunctionReader.string,
-    KIND.concatenated_string: FunctionReader.strings,
-}
+    value_delete_expression = value_sizeof_expression
 
 
 class _Readers(dict[int, Callable[..., FlowExpr]]):
@@ -664,37 +673,4 @@ class _Readers(dict[int, Callable[..., FlowExpr]]):
         return FunctionReader.anything
 
 
-VALUES = _Readers(
-    {
-        **LITERALS,
-        KIND.identifier: FunctionReader.identifier,
-        KIND.qualified_identifier: FunctionReader.qualified,
-        KIND.template_function: FunctionReader.qualified,
-        KIND.field_expression: FunctionReader.field,
-        KIND.this: FunctionReader.qualified,
-        KIND.call_expression: FunctionReader.call,
-        KIND.subscript_expression: FunctionReader.subscript,
-        KIND.parenthesized_expression: FunctionReader.parenthesized,
-        KIND.pointer_expression: FunctionReader.pointer,
-        KIND.cast_expression: FunctionReader.last_child,
-        KIND.binary_expression: FunctionReader.binary,
-        KIND.unary_expression: FunctionReader.unary,
-        KIND.update_expression: FunctionReader.update,
-        KIND.assignment_expression: FunctionReader.assignment,
-        KIND.conditional_expression: FunctionReader.conditional,
-        KIND.initializer_list: FunctionReader.braces,
-        KIND.initializer_pair: FunctionReader.last_child,
-        KIND.new_expression: FunctionReader.made,
-        KIND.compound_literal_expression: FunctionReader.made,
-        KIND.co_await_expression: FunctionReader.last_child,
-        KIND.throw_statement: FunctionReader.thrown,
-        KIND.sizeof_expression: FunctionReader.asked_only,
-        KIND.delete_expression: FunctionReader.asked_only,
-        KIND.comment: FunctionReader.skipped,
-        KIND.type_descriptor: FunctionReader.skipped,
-        KIND.template_argument_list: FunctionReader.skipped,
-        KIND.primitive_type: FunctionReader.skipped,
-        KIND.type_identifier: FunctionReader.skipped,
-        KIND.field_identifier: FunctionReader.skipped,
-    }
-)
+VALUES = _Readers(node_readers(FunctionReader, "value_"))
