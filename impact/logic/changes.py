@@ -146,9 +146,6 @@ def _change(
     )  # fmt: skip
 
 
-# A statement
-
-
 def _compared(
     one: StatementPlace, other: StatementPlace, names: Renames, successors: Mapping[int, Outlet]
 ) -> Iterator[LogicChange]:
@@ -356,9 +353,6 @@ def _named(start: StatementStart) -> str:
     return f"{kind} `{start.detail}`" if start.detail else kind
 
 
-# A publisher
-
-
 def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iterator[LogicChange]:
     old, new = one.outlet, other.outlet
     both = [new, old]
@@ -394,9 +388,6 @@ def _of_ros1(*outlets: Outlet) -> bool:
 
 def _offer(outlet: Outlet) -> str:
     return ", ".join(f"{name} {setting}" for name, setting in outlet.offers) or outlet.written
-
-
-# For people
 
 
 def _when(verb: str, said: Said) -> str:

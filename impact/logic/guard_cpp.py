@@ -228,8 +228,6 @@ class _Reader:
         part = node.child_by_field_name(name)
         return self.opaque(node) if part is None else self.term(part, depth)
 
-    # Kinds of expression
-
     def read_binary_expression(self, node: Any, depth: int) -> Term:
         operands, operators = self.spine(node)
         result = self.term(operands[0], depth)

@@ -176,8 +176,6 @@ class _Reader:
             return self.opaque(node)
         return read(self, node, depth + 1)
 
-    # Kinds of expression
-
     def read_BoolOp(self, node: ast.BoolOp, depth: int) -> Term:
         parts = [self.term(part, depth) for part in node.values]
         return join("and" if isinstance(node.op, ast.And) else "or", parts)

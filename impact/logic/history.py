@@ -87,8 +87,6 @@ class CommitHistory:
         self._files: dict[tuple[Any, bool], tuple[PackageFile, ...]] = {}
         self._roots: dict[str, dict[str, PackageState]] = {}
 
-    # Commits
-
     def commits(self, range: str = "", number: int | None = None, since: str = "") -> list[Commit]:
         """The commits that are compared with their parent, newest first; merges are left out, each side's commits are
         there by themselves.
@@ -132,8 +130,6 @@ class CommitHistory:
         import pygit2
 
         return pygit2.Oid(hex=self.tree.at(revision).commit)
-
-    # Packages
 
     def packages(self, commit: str) -> Mapping[str, PackageState]:
         """The packages of a commit by their names; of several with one name, those after the first by name and path.
@@ -257,8 +253,6 @@ class CommitHistory:
     @answer_once
     def _is_python(self, blob) -> bool:
         return kinds.script_kind(self.read(blob)[:512]) == "python"
-
-    # Contents
 
     def content(self, blob) -> bytes:
         """The bytes of a file. Raises OSError where the object is missing (a partial clone), damaged or too large."""

@@ -244,9 +244,6 @@ def _reaching(change: LogicChange, listeners: Mapping[str, list[ReachedSubscribe
     return msgspec.structs.replace(change, reaches=tuple(merged)) if merged else change
 
 
-# A commit
-
-
 class _Step(NamedTuple):
     """A commit with the packages that differ from its parent's."""
 
@@ -288,9 +285,6 @@ def _renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
     if not old - new or not new - old:
         return {}
     return history.renames(step.commit.parent, step.commit.id)
-
-
-# Digests
 
 
 class _Digests:
@@ -374,9 +368,6 @@ def _facts(
         fresh.append((row, pack(kinds.encode(extracted))))
         yield (content, kind), extracted.facts
     store.put(fresh)
-
-
-# Keys
 
 
 def _commit_key(commit: str, folder: str) -> bytes:

@@ -241,8 +241,6 @@ class _Digester:
                 for topic in self._full(site._replace(names=(value,))):
                     yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
 
-    # Statements
-
     def _said(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
         use, join = statement.use, self.join
         fn = use.fn
@@ -364,9 +362,6 @@ _AND = ("&&", "and")
 def _is_live(text: str) -> bool:
     plain = text.strip()
     return plain in _LIVE or bool(_OK.fullmatch(plain))
-
-
-# What is built
 
 
 def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:

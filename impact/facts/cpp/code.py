@@ -65,8 +65,6 @@ class CppCode:
         self._mentioned: dict[str, bool] = {}
         self._blocks: dict[int, list[tuple[int, str, Node, str]]] = {}
 
-    # -- syntax --------------------------------------------------------------------------------------------------------
-
     @cached_property
     def _parsed(self) -> tuple[str, str, Node]:
         """The text, what was parsed, and its tree."""
@@ -110,14 +108,10 @@ class CppCode:
         """The preprocessor conditions around an offset; None in a directive."""
         return self._scanned.under(offset)
 
-    # -- declarations --------------------------------------------------------------------------------------------------
-
     @cached_property
     def file(self) -> FileDeclarations:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
-
-    # -- uses ----------------------------------------------------------------------------------------------------------
 
     def mentions(self, word: str) -> bool:
         """Whether a word may stand in the file, in comments too."""
@@ -351,8 +345,6 @@ class CppCode:
             found.append(self._expression(type_, path))
         return tuple(found) or None  # `A a();` declares a function
 
-    # -- places --------------------------------------------------------------------------------------------------------
-
     def _in_function(self, path: Sequence[Node]) -> bool:
         return any(node.kind_id in _BODIES for node in path)
 
@@ -386,8 +378,6 @@ class CppCode:
                     elif how == "used" and at < path[-1].start_byte:
                         used.append(name)
         return CodePlace("::".join(scope), owner, function, tuple(opened), tuple(used))
-
-    # -- what names mean inside functions ------------------------------------------------------------------------------
 
     def _local(self, name: str, at: int, path: Sequence[Node], depth: int = 0) -> Local | None:
         """What a name means at an offset, as declared in the blocks around it."""
@@ -606,8 +596,6 @@ class CppCode:
     def _template(self, node: Node) -> tuple[str, ...]:
         listed = node.child_by_field_name("arguments")
         return tuple(self._of(each) for each in listed_in(listed)) if listed is not None else ()
-
-    # -- expressions ---------------------------------------------------------------------------------------------------
 
     def _expression(self, node: Node, path: Sequence[Node], depth: int = 0) -> Expr:
         number, at = node.kind_id, node.start_byte

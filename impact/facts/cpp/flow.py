@@ -111,8 +111,6 @@ class _File(CppStatements):
                 line = min(call.line for call in self.calls)
                 self.close((), line, max(call.line for call in self.calls))
 
-    # Scopes
-
     def scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
         """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty for none."""
         for child in children:
@@ -177,8 +175,6 @@ class _File(CppStatements):
 
     scope_preproc_ifdef = scope_preproc_if
 
-    # Names
-
     def scope_alias_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         target = node.child_by_field_name("type")
@@ -225,8 +221,6 @@ class _File(CppStatements):
             value = FlowExpr("number", text.strip("()"))
         if value is not None:
             self.constants.append(DataMember(self.said(said), "", self.line(node), value))
-
-    # Variables and members
 
     def scope_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         """A declaration outside of functions: variables; what declares functions tells only their names."""
@@ -309,8 +303,6 @@ class _File(CppStatements):
             guard = self.guard("cpp", text, line, guard)
         return guard
 
-    # Classes
-
     members: list[DataMember]
     methods: list[str]
 
@@ -349,8 +341,6 @@ class _File(CppStatements):
 
     def line_of_end(self, node: Node) -> int:
         return bisect_right(self.starts, node.end_byte)
-
-    # Functions
 
     def scope_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         """A function with its body."""

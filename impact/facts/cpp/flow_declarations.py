@@ -220,8 +220,6 @@ class Declarations(FunctionReader):
             return FlowExpr("call", name, tuple(parts))
         return None
 
-    # Functions
-
     def parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
         """The parameters of a function; their names are known from here on."""
         result: list[FlowParameter] = []

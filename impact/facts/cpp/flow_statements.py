@@ -171,8 +171,6 @@ class CppStatements(Declarations):
         last_line = bisect_right(self.starts, node.end_byte)
         return next_line == last_line or (next_line <= last_line + 1 and next_column > column)
 
-    # Conditions
-
     def condition(self, node: Node, guard: int) -> str:
         """Reads the condition in parentheses of an if, while or switch; gives its text."""
         children = listed_in(node)
@@ -248,8 +246,6 @@ class CppStatements(Declarations):
                 if tail is not None and len(head) + len(tail) < LONGEST_COMPOSED:
                     result.append(FlowCondition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
         return tuple(result) or STAYS
-
-    # Loops
 
     def read_while_statement(self, node: Node, guard: int) -> Leaving:
         asked: Node | None = None
@@ -330,8 +326,6 @@ class CppStatements(Declarations):
         # `do { ... } while (false)` runs once: a return inside is one outside, and `continue` goes on behind it.
         goes_on = _CONTINUE.search(self.text, body.start_byte, body.end_byte)
         return JUMPS if leaving == JUMPS and not goes_on else STAYS
-
-    # Switch
 
     def read_switch_statement(self, node: Node, guard: int) -> Leaving:
         asked = next((child for child in node.children if child.kind_id == KIND.condition_clause), None)
@@ -435,8 +429,6 @@ class CppStatements(Declarations):
         code = " && ".join(f"{subject} != {value}" for value in values)
         return (FlowCondition("case", f"{subject} other than {', '.join(values)}", line, code),)
 
-    # Exceptions, jumps
-
     def read_try_statement(self, node: Node, guard: int) -> Leaving:
         leaving: Leaving = STAYS
         caught: list[tuple[FlowCondition, Leaving]] = []
@@ -515,8 +507,6 @@ class CppStatements(Declarations):
         self.statement(body, self.guard("macro", text, self.line(node), guard))
         self.known = known | self.known
         return STAYS
-
-    # Preprocessor
 
     def branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
         """The condition of an #if, #ifdef, #elif or #else, what stands in it, and the branch after it."""

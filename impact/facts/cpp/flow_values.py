@@ -118,8 +118,6 @@ class FunctionReader:
     def restore(self, state: tuple[Any, ...]) -> None:
         self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known = state
 
-    # Text and places
-
     def said(self, node: Node) -> str:
         """The source of a node on one line."""
         text = self.text[node.start_byte : node.end_byte]
@@ -138,8 +136,6 @@ class FunctionReader:
         """A new guard around what follows; gives its place."""
         self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
         return len(self.guards) - 1
-
-    # Expressions
 
     def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> FlowExpr:
         """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,

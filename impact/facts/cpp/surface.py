@@ -117,8 +117,6 @@ class _Reader:
             tuple(self.announced),
         )
 
-    # Declarations
-
     def _walk(self) -> None:
         code = self.code
         marks = [match.start() for match in _MARKS.finditer(code)]
@@ -476,8 +474,6 @@ class _Reader:
 
     def _lose(self, head: str) -> None:
         self.lost += len(head.strip())
-
-    # Scopes
 
     def _namespace(self, tokens: list[str], at: int, resume: tuple[int, int]) -> None:
         around = self.scopes[-1]

@@ -32,8 +32,6 @@ def extract(data: bytes, kind: str) -> LaunchFile:
         return LaunchFile(kind.removeprefix("launch_"), 0, (), (Problem(1, "nested too deeply to be read"),))
 
 
-# Substitutions
-
 _ROS1 = re.compile(r"\$\(([^$()]*)\)")
 
 

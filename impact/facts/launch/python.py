@@ -111,8 +111,6 @@ class Walker:
             result = result.items[0]
         return tuple(self.actions(result, entry.node.lineno)), ()
 
-    # Statements
-
     def block(self, statements: Sequence[ast.stmt]) -> bool:
         """Walks statements; True when none that follows them can run."""
         added = 0
@@ -293,8 +291,6 @@ class Walker:
         for alias in statement.names:
             self.scope.names[alias.asname or alias.name] = LaunchModule(f"{statement.module or ''}.{alias.name}")
 
-    # Conditions
-
     def truth(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
         return self.truth_of(self.value(node), node)
@@ -366,8 +362,6 @@ class Walker:
         if isinstance(left, Unknown) or isinstance(right, Unknown):
             return None
         return False
-
-    # Expressions
 
     def value(self, node: ast.expr) -> Any:
         self.spend(1)
@@ -604,8 +598,6 @@ class Walker:
     value_SetComp = value_ListComp
     value_DictComp = value_ListComp
 
-    # Lists under conditions
-
     def guarded(self, value: Any, depth: int) -> Any:
         return guarded_by(value, tuple(self.conditions[depth:]))
 
@@ -614,8 +606,6 @@ class Walker:
             holder.items.append(self.guarded(item, holder.depth))
             if len(holder.items) > MOST_STEPS:
                 raise TooMuch(STEPS)
-
-    # Calls
 
     def value_Call(self, node: ast.Call) -> Any:
         function = self.value(node.func)
@@ -807,8 +797,6 @@ class Walker:
         except ValueError:
             return Unknown(source_of(node))
         return TextValue(together(values))
-
-    # Values as facts
 
     def spend(self, steps: int) -> None:
         """Counts steps; raises TooMuch when there have been too many."""

@@ -100,8 +100,6 @@ class LaunchCall(NamedTuple):
         elif is_given(value):
             yield value, extra
 
-    # Actions
-
     def action(
         self,
         kind: str,

@@ -94,8 +94,6 @@ class PythonStatements(Expressions):
                 for name in sorted(body.captured):
                     body.outer.captures(name, body)
 
-    # Blocks
-
     def block(self, statements: list[ast.stmt]) -> Leaving:
         """Reads statements; gives how control leaves them."""
         saved = self.guard
@@ -328,8 +326,6 @@ class PythonStatements(Expressions):
                 value = subject if node is pattern else FlowExpr("index", "", (subject, ANY))
                 self.bind(ast.Name(name, ast.Store()), value, line)
 
-    # Jumps
-
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
             value = self.value(node.value, "escape", target="return")
@@ -357,8 +353,6 @@ class PythonStatements(Expressions):
         if node.msg is not None:
             self.visit(node.msg)
         return (HoldingCondition("if", self.source(node.test), node.lineno),)
-
-    # Plain statements
 
     def read_Expr(self, node: ast.Expr) -> Leaving:
         value = node.value
@@ -466,8 +460,6 @@ class PythonStatements(Expressions):
                 dot = "" if module.endswith(".") or not module else "."
                 self.aliases.append(Alias(alias.asname or alias.name, f"{module}{dot}{alias.name}", scope))
         return STAYS
-
-    # Definitions
 
     def decorators(self, node) -> tuple[str, ...]:
         found: list[str] = []

@@ -80,8 +80,6 @@ class Expressions(SourceText):
         self.guards.append(Guard(kind, text, line, self.guard, early))
         self.guard = len(self.guards) - 1
 
-    # Names
-
     def sees(self, name: str) -> bool:
         return self.body.outer is not None and self.body.sees(name)
 
@@ -106,8 +104,6 @@ class Expressions(SourceText):
             inner = self.spelt(node.value)
             return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
         return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
-
-    # Plain values
 
     def member(self, path: str, name: str) -> FlowExpr:
         cls = self.body.cls
@@ -196,8 +192,6 @@ class Expressions(SourceText):
 
     visit_YieldFrom = visit_Yield
 
-    # Paths
-
     def reach(self, node) -> tuple[str, bool]:
         """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
         such as an index or a call, is visited."""
@@ -236,8 +230,6 @@ class Expressions(SourceText):
         parts.append(head)
         parts.reverse()
         return ".".join(parts), local
-
-    # Values
 
     def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> FlowExpr:
         """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
@@ -477,8 +469,6 @@ class Expressions(SourceText):
                     return FlowExpr("list", "each", tuple(self.elements(argument) for argument in arguments))
         return self.value(node, "read")
 
-    # Binding
-
     def bind(self, target, value: FlowExpr, line: int, type: str = "", operator: str = "=") -> None:
         """An assignment of a value, already read, to a name, a member, an element or several of them."""
         cls = target.__class__
@@ -633,8 +623,6 @@ class Expressions(SourceText):
         if not parts:
             return FlowExpr("text", "")
         return parts[0] if len(parts) == 1 and parts[0].kind == "text" else FlowExpr("join", "", tuple(parts))
-
-    # Calls
 
     def called(self, node: ast.Call, target: str = "") -> FlowExpr:
         """A call as a value."""

@@ -104,8 +104,6 @@ class PythonReader(ObjectUses, SourceText):
         self.block(tree.body)
         self.looked_up_by_functions()
 
-    # Walking
-
     def block(self, nodes) -> None:
         handlers = _HANDLERS
         for node in nodes:
@@ -157,8 +155,6 @@ class PythonReader(ObjectUses, SourceText):
     def need(self, minor: int, reason: str, node) -> None:
         if self.needs is None or minor > self.needs[0]:
             self.needs = (minor, node.lineno, reason)
-
-    # Names
 
     def visit_Name(self, node: ast.Name) -> None:
         if node.ctx.__class__ is ast.Store:
@@ -261,8 +257,6 @@ class PythonReader(ObjectUses, SourceText):
                 self.imported_names.append(
                     AttributeUse(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
-
-    # Conditions
 
     def under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
         """Visits statements with one more condition for imports and one for uses."""
@@ -430,8 +424,6 @@ class PythonReader(ObjectUses, SourceText):
     def line_bytes(self, line: int) -> bytes:
         return self.lines[line - 1].encode("utf-8", "replace")
 
-    # Definitions
-
     def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
         for decorator in node.decorator_list:
@@ -579,8 +571,6 @@ class PythonReader(ObjectUses, SourceText):
         if node.cause is not None:
             self.need(0, "raise from", node)
         self.inside(node)
-
-    # Mentions
 
     def visit_Constant(self, node: ast.Constant) -> None:
         if self.has_paths and node.value.__class__ is str:

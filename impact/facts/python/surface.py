@@ -215,8 +215,6 @@ class _Module:
         self.block(node.orelse, scope, (*conditions, TRY) if guarded else conditions)
         self.block(node.finalbody, scope, conditions)
 
-    # What is bound
-
     def function(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         decorators = tuple(_dotted(decorator) for decorator in node.decorator_list)
         last = {decorator.rpartition(".")[2] for decorator in decorators}
