@@ -89,11 +89,7 @@ class Declarations(FunctionReader):
                 name, marks = self.declared(child)
                 if name is None:
                     continue
-                variable = self.text[name.start_byte : name.end_byte]
-                self.known.add(variable)
-                self.assignments.append(
-                    Assignment(variable, FlowExpr("make", kind_ + marks), self.line(name), guard, kind_ + marks)
-                )
+                self.assign(name, FlowExpr("make", kind_ + marks), guard, kind_ + marks)
             elif number in DECLARED_TYPES:
                 self.local_type(child)
         return value
@@ -120,14 +116,18 @@ class Declarations(FunctionReader):
         given = children[1]
         if name is None or given.kind_id not in (KIND.argument_list, KIND.initializer_list):
             return self.anything(node, guard, READ, "")
-        variable = self.text[name.start_byte : name.end_byte]
         if kind_.endswith("auto") or marks:
             inner = listed_in(given)
             if len(inner) == 1:
                 return self.kept(children[0], inner[0], guard, kind_)
         value = FlowExpr("make", kind_, self.arguments(given, guard, bare(kind_)))
+        return self.assign(name, value, guard, kind_ + marks)
+
+    def assign(self, name: Node, value: FlowExpr, guard: int, type_: str) -> FlowExpr:
+        """Notes a variable that is declared here, with the value that it begins with."""
+        variable = self.text[name.start_byte : name.end_byte]
         self.known.add(variable)
-        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
+        self.assignments.append(Assignment(variable, value, self.line(name), guard, type_))
         return value
 
     def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
@@ -149,10 +149,7 @@ class Declarations(FunctionReader):
                 self.assignments.append(Assignment(variable, part, line, guard, kind_ + marks))
             return value
         variable = self.text[name.start_byte : name.end_byte]
-        value = self.value(given, guard, READ, variable)
-        self.known.add(variable)
-        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
-        return value
+        return self.assign(name, self.value(given, guard, READ, variable), guard, kind_ + marks)
 
     def constructed(self, node: Node, guard: int, kind_: str) -> None:
         """`T x(a, f());` in a function, which the grammar takes for a function's declaration."""
@@ -171,11 +168,7 @@ class Declarations(FunctionReader):
             if part is None:
                 return
             parts.append(part)
-        variable = self.text[name.start_byte : name.end_byte]
-        self.known.add(variable)
-        self.assignments.append(
-            Assignment(variable, FlowExpr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
-        )
+        self.assign(name, FlowExpr("make", kind_, tuple(parts)), guard, kind_ + marks)
 
     def called_after(self, node: Node, guard: int, asked: str) -> bool:
         """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""

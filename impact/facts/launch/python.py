@@ -594,9 +594,7 @@ class Walker:
             del self.conditions[depth:]
         return Pairs(made, depth) if isinstance(node, ast.DictComp) else Items(made, depth)
 
-    value_GeneratorExp = value_ListComp
-    value_SetComp = value_ListComp
-    value_DictComp = value_ListComp
+    value_GeneratorExp = value_SetComp = value_DictComp = value_ListComp
 
     def guarded(self, value: Any, depth: int) -> Any:
         return guarded_by(value, tuple(self.conditions[depth:]))

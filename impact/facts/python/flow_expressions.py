@@ -346,8 +346,7 @@ class Expressions(SourceText):
             return FlowExpr("list", "", tuple(kept))
         return FlowExpr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
 
-    value_List = value_Tuple
-    value_Set = value_Tuple
+    value_List = value_Set = value_Tuple
 
     def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
@@ -417,9 +416,7 @@ class Expressions(SourceText):
             found.append(FlowParameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
         return tuple(found)
 
-    def value_ListComp(
-        self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
-    ) -> FlowExpr:
+    def value_ListComp(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
@@ -436,9 +433,7 @@ class Expressions(SourceText):
         self.guard, self.in_class = saved, in_class
         return FlowExpr("other", self.other(node).text, (each,))
 
-    value_SetComp = value_ListComp
-    value_GeneratorExp = value_ListComp
-    value_DictComp = value_ListComp
+    value_SetComp = value_GeneratorExp = value_DictComp = value_ListComp
 
     def walked(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""

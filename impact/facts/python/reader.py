@@ -142,8 +142,7 @@ class PythonReader(ObjectUses, SourceText):
     def visit_Pass(self, node) -> None:
         pass
 
-    visit_Break = visit_Pass
-    visit_Continue = visit_Pass
+    visit_Break = visit_Continue = visit_Pass
 
     def column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
@@ -291,8 +290,7 @@ class PythonReader(ObjectUses, SourceText):
         self.branch(node.orelse)
         self.merge(first)
 
-    visit_AsyncFor = visit_For
-    visit_While = visit_For
+    visit_AsyncFor = visit_While = visit_For
 
     def bind_element(self, target, over) -> None:
         """The variable of a loop, which holds an element of what is walked through."""
@@ -311,9 +309,7 @@ class PythonReader(ObjectUses, SourceText):
         self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
         self.scope = outer
 
-    visit_SetComp = visit_ListComp
-    visit_GeneratorExp = visit_ListComp
-    visit_DictComp = visit_ListComp
+    visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_ListComp
 
     def visit_If(self, node: ast.If) -> None:
         test = self.source(node.test)
