@@ -52,13 +52,9 @@ class GitTree(Walked):
     """
 
     def __init__(
-        self,
-        repository: str | os.PathLike[str],
-        revision: str = "HEAD",
-        folder: str = "",
-        *,
+        self, repository: str | os.PathLike[str], revision: str = "HEAD", folder: str = "", *,
         follow_links: bool = False,
-    ):
+    ):  # fmt: skip
         self.repository = os.fsdecode(repository)
         self.follow_links = follow_links
         opened = open_repository(self.repository)

@@ -105,15 +105,9 @@ class WorkingTree(Walked):
             links[known:] = sorted(links[known:])
 
     def _folder(
-        self,
-        folder: str,
-        real: str,
-        repository: str | None,
-        parents: tuple[str, ...],
-        stack: list[tuple[str, str, str | None]],
-        links: list[tuple[str, str, tuple[str, ...]]],
-        found: list[TreeEntry],
-    ) -> None:
+        self, folder: str, real: str, repository: str | None, parents: tuple[str, ...],
+        stack: list[tuple[str, str, str | None]], links: list[tuple[str, str, tuple[str, ...]]], found: list[TreeEntry],
+    ) -> None:  # fmt: skip
         """Lists one folder: files go to found, folders onto the stack, links to folders into links."""
         try:
             with os.scandir(os.path.join(self.root, folder)) as scan:

@@ -205,18 +205,12 @@ class _Blocks:
         key = tuple(result)
         return self.kept.setdefault(key, key)
 
-    def enter(self, own: Condition | None) -> None:
-        self.open.append(([], own))
-
     def turn(self, own: Condition | None) -> None:
         """Into the next branch: the one left is negated. own is None for #else."""
         earlier, last = self.open.pop()
         if last is not None and len(earlier) <= MOST_BRANCHES:
             earlier.append(Condition("cpp", last.text, not last.negated))
         self.open.append((earlier, own))
-
-    def leave(self) -> None:
-        self.open.pop()
 
 
 def _condition(keyword: str, text: str) -> Condition:
@@ -340,11 +334,11 @@ def scan(data: bytes) -> Scan:
         if guard and index in guard:
             continue
         if keyword in ("if", "ifdef", "ifndef"):
-            blocks.enter(_condition(keyword, body))
+            blocks.open.append(([], _condition(keyword, body)))
         elif not blocks.open:
             problems.append(Problem(place(start)[0], f"`#{keyword}` without `#if`"))
         elif keyword == "endif":
-            blocks.leave()
+            blocks.open.pop()
         else:
             blocks.turn(None if keyword == "else" else _condition(keyword, body))
         conditions = blocks.conditions()

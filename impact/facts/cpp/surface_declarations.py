@@ -395,13 +395,7 @@ def _without_late(tokens: list[str], head: Head) -> tuple[list[str], Head]:
 
 
 def _called(
-    rest: list[str],
-    place: int,
-    behind: int,
-    units: list[tuple[int, int]],
-    builtin: bool,
-    head: Head,
-    class_name: str,
+    rest: list[str], place: int, behind: int, units: list[tuple[int, int]], builtin: bool, head: Head, class_name: str
 ) -> list[Declarator] | None:
     """A name with parentheses behind it."""
     start, stop = units[-1]

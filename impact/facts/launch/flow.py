@@ -157,30 +157,26 @@ def _ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
         return named(_ROS2_NAMED[verb], *args)
     if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
         return named(_ROS2_PLACES.get(verb, verb), args[0])
-    if verb == "exec-in-pkg" and len(args) == 2:
-        return ValuePart("executable", "", tuple(args))
-    if verb in ("dirname", "filename") and not args:
-        return ValuePart(verb)
     if verb == "eval" and args:
         return ValuePart("eval", "launch", (spaced(args),))
-    if verb == "file-content" and len(args) == 1:
-        return ValuePart("content", "", (args[0],))
     if verb == "command" and args:
         return ValuePart("command", "", (args[0],))
-    if verb in ("equals", "not-equals") and len(args) == 2:
-        same = ValuePart("equals", "", tuple(args))
-        return same if verb == "equals" else ValuePart("not", "", ((same,),))
-    if verb == "not" and len(args) == 1:
-        return ValuePart("not", "", (args[0],))
-    if verb in ("and", "or", "any", "all"):
-        return ValuePart({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
-    if verb == "if" and 2 <= len(args) <= 3:
-        return ValuePart("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
-    return other(source)
+    if verb == "not-equals" and len(args) == 2:
+        return ValuePart("not", "", ((ValuePart("equals", "", tuple(args)),),))
+    if verb == "if" and len(args) == 2:
+        args = [*args, literal("")]
+    kind, numbers = _ROS2_PIECES.get(verb, ("", ()))
+    return ValuePart(kind, "", tuple(args)) if numbers is None or len(args) in numbers else other(source)
 
 
 _ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
 _ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
+# What others are here, and how many arguments they take; None for any number.
+_ROS2_PIECES: dict[str, tuple[str, tuple[int, ...] | None]] = {
+    "exec-in-pkg": ("executable", (2,)), "dirname": ("dirname", (0,)), "filename": ("filename", (0,)),
+    "file-content": ("content", (1,)), "equals": ("equals", (2,)), "not": ("not", (1,)), "if": ("choose", (3,)),
+    "and": ("and", None), "all": ("and", None), "or": ("or", None), "any": ("or", None),
+}  # fmt: skip
 
 
 def spaced(values: list[Value]) -> Value:
