@@ -175,8 +175,9 @@ def _compared(
         old_ways = [way for way in first.ways if way.start in was]
         new_ways = [way for way in second.ways if way.start in is_now]
         if not old_ways or not new_ways:
-            if _said_of(old_ways or new_ways):
-                starts.append(_only(old_ways, new_ways))
+            start = (new_ways or old_ways)[0].start
+            if start.kind not in _UNSAID:
+                starts.append(f"{'also' if new_ways else 'no longer'} on {_named(start)}")
             else:
                 kinds.append("widened" if new_ways else "tightened")
                 whys.append(f"{'also' if new_ways else 'no longer'} from {_unnamed(new_ways or old_ways)}")
@@ -321,14 +322,6 @@ def _plain(detail: str) -> str:
     """A period or name without what spelling alone decides."""
     text = "".join(detail.split()).replace("this->", "").replace("this.", "")
     return text.strip("/") if "/" in text else text
-
-
-def _said_of(ways: Sequence[Path]) -> bool:
-    return ways[0].start.kind not in _UNSAID
-
-
-def _only(old: Sequence[Path], new: Sequence[Path]) -> str:
-    return f"also on {_named(new[0].start)}" if new else f"no longer on {_named(old[0].start)}"
 
 
 def _unnamed(ways: Sequence[Path]) -> str:

@@ -245,7 +245,8 @@ class _Digester:
         use, join = statement.use, self.join
         fn = use.fn
         own = join.guards(fn, use.call.guard)
-        found = [way for way in join.ways(fn) if not self._is_implied(way.trigger)]
+        led = ((way, way.trigger) for way in join.ways(fn))
+        found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
         found = found or [Way(Trigger("unknown", "", "", 0))]
         ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
         owners = [owner for owner in self._owners(fn) if owner is not None]
@@ -254,9 +255,6 @@ class _Digester:
             fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
-
-    def _is_implied(self, trigger: Trigger) -> bool:
-        return trigger.kind == "subscriber" and (trigger.path, trigger.line) in self.implied
 
     def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
         start = StatementStart(trigger.kind, trigger.detail)

@@ -46,7 +46,8 @@ def open_repository(place: str) -> OpenedRepository:
     """The repository at or above a folder. Raises TreeError."""
     import pygit2
 
-    _trust_any_owner(pygit2)
+    # Git refuses repositories of other users because it would run their hooks. Here only objects are read.
+    pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
     try:
         check = _Check()
         check.around(os.path.realpath(place))
@@ -62,11 +63,6 @@ def open_repository(place: str) -> OpenedRepository:
         named = f"`{shown(str(error.filename))}`: " if isinstance(error, OSError) and error.filename else ""
         text = f"the git repository `{shown(place)}` cannot be opened: {named}{shown(str(reason))}; repair or remove it"
         raise TreeError(text) from None
-
-
-def _trust_any_owner(pygit2) -> None:
-    # Git refuses repositories of other users because it would run their hooks. Here only objects are read.
-    pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
 
 
 class _Check:

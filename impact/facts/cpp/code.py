@@ -327,7 +327,7 @@ class CppCode:
                         continue
                     if value.kind_id == KIND.argument_list and inner.kind_id == KIND.identifier:
                         return True, self._arguments(value, path[:level])
-                elif declarator.kind_id == KIND.function_declarator and self._in_function(path):
+                elif declarator.kind_id == KIND.function_declarator and any(node.kind_id in _BODIES for node in path):
                     return True, self._as_arguments(declarator, path[:level])
         return False, None
 
@@ -344,9 +344,6 @@ class CppCode:
                 return None
             found.append(self._expression(type_, path))
         return tuple(found) or None  # `A a();` declares a function
-
-    def _in_function(self, path: Sequence[Node]) -> bool:
-        return any(node.kind_id in _BODIES for node in path)
 
     def _place(self, path: Sequence[Node]) -> CodePlace:
         scope: list[str] = []

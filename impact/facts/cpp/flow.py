@@ -105,7 +105,7 @@ class _File(CppStatements):
         self.restore(self.outside[owner])
 
     def leave_outside(self) -> None:
-        for _owner, state in self.outside.items():
+        for state in self.outside.values():
             self.restore(state)
             if self.calls:
                 line = min(call.line for call in self.calls)

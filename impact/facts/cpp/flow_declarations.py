@@ -73,7 +73,9 @@ class Declarations(FunctionReader):
                 if not typed:
                     kind_, typed = self.written_type(children), True
                 value = self.initialised(child, guard, kind_)
-            elif number in DECLARATORS and (number not in NAMES or typed or self.is_declarator(node, index)):
+            elif number in DECLARATORS and (
+                number not in NAMES or typed or node.field_name_for_child(index) == "declarator"
+            ):
                 if not typed:
                     kind_, typed = self.written_type(children), True
                 if number == KIND.function_declarator:
@@ -93,9 +95,6 @@ class Declarations(FunctionReader):
             elif number in DECLARED_TYPES:
                 self.local_type(child)
         return value
-
-    def is_declarator(self, node: Node, index: int) -> bool:
-        return node.field_name_for_child(index) == "declarator"
 
     def local_type(self, node: Node) -> None:
         """A class inside a function; who reads files says what is done with it."""

@@ -7,7 +7,6 @@ values are sequences of pieces.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 import msgspec
 
@@ -179,12 +178,9 @@ _ROS2_PIECES: dict[str, tuple[str, tuple[int, ...] | None]] = {
 }  # fmt: skip
 
 
-def spaced(values: list[Value]) -> Value:
-    """Values as one, blanks between them."""
-    parts: list[Value] = []
-    for value in values:
-        parts += (*([literal(" ")] if parts else ()), value)
-    return together(parts)
+def spaced(values: list[Value], separator: str = " ") -> Value:
+    """Values as one, with a separator between them."""
+    return together([part for value in values for part in (literal(separator), value)][1:])
 
 
 # XML and YAML as one kind of tree
@@ -346,7 +342,7 @@ class _Reader:
 
     def value(self, text: str | list[str]) -> Value:
         if isinstance(text, list):
-            return together([literal("["), *_commas([self.value(item) for item in text]), literal("]")])
+            return together([literal("["), spaced([self.value(item) for item in text], ", "), literal("]")])
         return substitutions(text, self.generation)
 
     def action(self, entity: _Entity, inside: str) -> list[Action]:
@@ -426,13 +422,6 @@ class _Reader:
             return found
         attributes = [(key, together([*above, value]) if key == "name" else value) for key, value in attributes]
         return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
-
-
-def _commas(values: list[Value]) -> Iterator[Value]:
-    for place, value in enumerate(values):
-        if place:
-            yield literal(", ")
-        yield value
 
 
 def words(value: Value) -> list[Value]:

@@ -589,9 +589,6 @@ class PythonReader(ObjectUses, SourceText):
         reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
         self.references[reference] = None
 
-    def all_references(self) -> tuple[Reference, ...]:
-        return tuple(sorted(self.references, key=lambda reference: (reference.line, reference.column)))
-
     def visit_BinOp(self, node: ast.BinOp) -> None:
         if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
             self.path(node)

@@ -5,6 +5,7 @@ import codecs
 import re
 import warnings
 from functools import lru_cache
+from operator import attrgetter
 from typing import NamedTuple
 
 import msgspec
@@ -152,7 +153,7 @@ def extract(data: bytes) -> PythonFile:
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.attributes(),
-                references=reader.all_references(),
+                references=tuple(sorted(reader.references, key=attrgetter("line", "column"))),
                 python2_only=old or tuple(reader.python2_only),
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
