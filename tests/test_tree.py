@@ -646,14 +646,14 @@ def test_a_folder_is_no_base(tmp_path):
 ])  # fmt: skip
 def test_paths_have_so_many_characters_in_all(tmp_path, monkeypatch, kind, entries, told):
     from rosimpact.edges.limits import Limits
-    from rosimpact.impact.tree import git, paths, working
+    from rosimpact.impact.tree import paths, working
 
     for name in ("a", "b", "c"):
         place = tmp_path / ("d" * 250) / name
         place.parent.mkdir(exist_ok=True)
         place.write_text(name)
     commit(tmp_path)
-    for module in (git, paths, working):
+    for module in (paths, working):
         monkeypatch.setattr(module, "limits", lambda: Limits(entries=entries))
     tree = kind(tmp_path)
     tree.entries()

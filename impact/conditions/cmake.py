@@ -25,9 +25,10 @@ NUMBER = re.compile(r"\s*[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?\s*\Z")
 _MAX_DEPTH = 60
 _TRUE = frozenset(("1", "ON", "YES", "TRUE", "Y"))
 _FALSE = frozenset(("0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""))
-_UNARY = frozenset(
-    ("EXISTS", "IS_DIRECTORY", "IS_SYMLINK", "IS_ABSOLUTE", "COMMAND", "DEFINED", "TARGET", "POLICY", "TEST")
-) | {"IS_READABLE", "IS_WRITABLE", "IS_EXECUTABLE"}
+_UNARY = frozenset((
+    "EXISTS", "IS_DIRECTORY", "IS_SYMLINK", "IS_ABSOLUTE", "COMMAND", "DEFINED", "TARGET", "POLICY", "TEST",
+    "IS_READABLE", "IS_WRITABLE", "IS_EXECUTABLE",
+))  # fmt: skip
 COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "EQUAL": operator.eq,
     "LESS": operator.lt,
@@ -35,12 +36,8 @@ COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "LESS_EQUAL": operator.le,
     "GREATER_EQUAL": operator.ge,
 }
-_BINARY = frozenset(f"{prefix}{name}" for prefix in ("", "STR", "VERSION_") for name in COMPARISONS) | {
-    "MATCHES",
-    "IN_LIST",
-    "IS_NEWER_THAN",
-    "PATH_EQUAL",
-}
+_BINARY = frozenset(f"{prefix}{name}" for prefix in ("", "STR", "VERSION_") for name in COMPARISONS)
+_BINARY |= {"MATCHES", "IN_LIST", "IS_NEWER_THAN", "PATH_EQUAL"}
 _ROS1_ONLY = frozenset(("catkin", "roscpp", "rospy", "message_generation", "genmsg", "nodelet", "roslaunch", "rosunit"))
 _ROS2_ONLY = frozenset(("ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "ament", "rclcpp", "rclpy"))
 _ROS2_ONLY |= {"rosidl_default_generators", "rclcpp_components", "ament_lint_auto", "launch_testing_ament_cmake"}

@@ -21,71 +21,39 @@ _CPP_TOKEN = re.compile(
 )
 _WORD_OPERATORS = {"and": "&&", "or": "||", "not": "!", "bitand": "&", "bitor": "|", "xor": "^", "not_eq": "!="}
 _PRECEDENCE = {
-    "||": 1,
-    "&&": 2,
-    "|": 3,
-    "^": 4,
-    "&": 5,
-    "==": 6,
-    "!=": 6,
-    "<": 7,
-    ">": 7,
-    "<=": 7,
-    ">=": 7,
-    "<<": 8,
-    ">>": 8,
-    "+": 9,
-    "-": 9,
-    "*": 10,
-    "/": 10,
-    "%": 10,
-}
-_PRESENT = frozenset(
-    ("__cplusplus", "__linux__", "__linux", "linux", "__unix__", "__unix", "unix", "__gnu_linux__", "__GNUC__")
-) | {"__has_include", "Q_OS_LINUX", "Q_OS_UNIX", "__ELF__", "__STDC__"}
-_ABSENT = frozenset(
-    (
-        "_WIN32",
-        "WIN32",
-        "__WIN32__",
-        "_WIN64",
-        "WIN64",
-        "_MSC_VER",
-        "__APPLE__",
-        "__MACH__",
-        "__MINGW32__",
-        "__MINGW64__",
+    sign: strength
+    for strength, signs in enumerate(
+        ("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1
     )
-) | {"__CYGWIN__", "__FreeBSD__", "__OpenBSD__", "__NetBSD__", "__sun", "__ANDROID__", "__EMSCRIPTEN__", "__BORLANDC__"}
-_ABSENT |= {"Q_OS_WIN", "Q_OS_WIN32", "Q_OS_MAC", "Q_OS_MACOS", "Q_MOC_RUN", "SWIG", "DOXYGEN", "__INTELLISENSE__"}
-_ABSENT |= {"DOXYGEN_SHOULD_SKIP_THIS", "__VXWORKS__", "__QNX__", "ARDUINO"}
+    for sign in signs.split()
+}
+_PRESENT = frozenset((
+    "__cplusplus", "__linux__", "__linux", "linux", "__unix__", "__unix", "unix", "__gnu_linux__", "__GNUC__",
+    "__has_include", "Q_OS_LINUX", "Q_OS_UNIX", "__ELF__", "__STDC__",
+))  # fmt: skip
+_ABSENT = frozenset((
+    "_WIN32", "WIN32", "__WIN32__", "_WIN64", "WIN64", "_MSC_VER", "__APPLE__", "__MACH__", "__MINGW32__",
+    "__MINGW64__", "__CYGWIN__", "__FreeBSD__", "__OpenBSD__", "__NetBSD__", "__sun", "__ANDROID__", "__EMSCRIPTEN__",
+    "__BORLANDC__", "Q_OS_WIN", "Q_OS_WIN32", "Q_OS_MAC", "Q_OS_MACOS", "Q_MOC_RUN", "SWIG", "DOXYGEN",
+    "__INTELLISENSE__", "DOXYGEN_SHOULD_SKIP_THIS", "__VXWORKS__", "__QNX__", "ARDUINO",
+))  # fmt: skip
 _PART = re.compile(
     r"(?:__)?(\w+?)_(?:VERSION_(MAJOR|MINOR|PATCH|REVISION|SUBMINOR)|(MAJOR|MINOR|PATCH|SUBMINOR)_VERSION)"
 )
 # X_VERSION as one number: how much major, minor and patch weigh.
 _WEIGHTS = {
-    "BOOST_VERSION": (100000, 100, 1),
-    "PCL_VERSION": (100000, 100, 1),
-    "FMT_VERSION": (10000, 100, 1),
-    "SPDLOG_VERSION": (10000, 100, 1),
-    "ZMQ_VERSION": (10000, 100, 1),
-    "QT_VERSION": (65536, 256, 1),
-    "OGRE_VERSION": (65536, 256, 1),
-    "MOVEIT_FCL_VERSION": (65536, 256, 1),
+    **dict.fromkeys(("BOOST_VERSION", "PCL_VERSION"), (100000, 100, 1)),
+    **dict.fromkeys(("FMT_VERSION", "SPDLOG_VERSION", "ZMQ_VERSION"), (10000, 100, 1)),
+    **dict.fromkeys(("QT_VERSION", "OGRE_VERSION", "MOVEIT_FCL_VERSION"), (65536, 256, 1)),
+    **dict.fromkeys((f"LIBAV{part}_VERSION_INT" for part in ("CODEC", "FORMAT", "UTIL")), (65536, 256, 1)),
     "OMPL_VERSION_VALUE": (1000000, 1000, 1),
-    "LIBAVCODEC_VERSION_INT": (65536, 256, 1),
-    "LIBAVFORMAT_VERSION_INT": (65536, 256, 1),
-    "LIBAVUTIL_VERSION_INT": (65536, 256, 1),
     "PY_VERSION_HEX": (1 << 24, 1 << 16, 1 << 8),
 }
 # Macros that make such a number from three.
 _MAKERS = {
+    **dict.fromkeys(("QT_VERSION_CHECK", "OGRE_VERSION_CHECK", "FCL_VERSION_CHECK", "AV_VERSION_INT"), (65536, 256, 1)),
     "PCL_VERSION_CALC": (100000, 100, 1),
     "ZMQ_MAKE_VERSION": (10000, 100, 1),
-    "QT_VERSION_CHECK": (65536, 256, 1),
-    "OGRE_VERSION_CHECK": (65536, 256, 1),
-    "FCL_VERSION_CHECK": (65536, 256, 1),
-    "AV_VERSION_INT": (65536, 256, 1),
 }
 _AT_LEAST = re.compile(r"(\w+?)_(?:VERSION_(?:GTE|GE|AT_LEAST|MINIMUM)|MIN_VERSION)")
 _LESS_THAN = re.compile(r"(\w+?)_VERSION_(?:LT|LESS)")

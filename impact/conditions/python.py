@@ -13,6 +13,7 @@ from .environment import Environment
 from .logic import both, either, negation
 
 _UNKNOWN = object()
+_ON_LINUX = {"sys.platform": "linux", "platform": "linux", "os.name": "posix"}
 
 
 class _VersionInfo(tuple):
@@ -66,11 +67,8 @@ def _python_value(node: ast.expr, environment: Environment) -> Any:
     if isinstance(node, ast.Call):
         return _python_call(node, environment)
     if isinstance(node, ast.BoolOp | ast.UnaryOp):
-        value = (
-            truth_of(node, environment)
-            if not isinstance(node, ast.UnaryOp) or isinstance(node.op, ast.Not)
-            else None
-        )
+        known = not isinstance(node, ast.UnaryOp) or isinstance(node.op, ast.Not)
+        value = truth_of(node, environment) if known else None
         return _UNKNOWN if value is None else value
     return _UNKNOWN
 
@@ -78,14 +76,10 @@ def _python_value(node: ast.expr, environment: Environment) -> Any:
 def _python_name(name: str, environment: Environment) -> Any:
     if name.endswith("TYPE_CHECKING"):
         return False
-    if name in ("sys.platform", "platform"):
-        return "linux"
-    if name == "os.name":
-        return "posix"
-    if name == "ROS_DISTRO":
-        return environment.ros_distro or _UNKNOWN
-    if name == "ROS_VERSION":
-        return environment.ros_version or _UNKNOWN
+    if name in _ON_LINUX:
+        return _ON_LINUX[name]
+    if name in ("ROS_DISTRO", "ROS_VERSION"):
+        return _environment_variable(name, environment)
     if environment.python is None:
         return _UNKNOWN
     major, minor = environment.python

@@ -82,12 +82,9 @@ class ExtractedFacts:
         return known
 
     def look(
-        self,
-        paths: Iterable[str],
-        kind: str,
-        table: Any = None,
+        self, paths: Iterable[str], kind: str, table: Any = None,
         on_error: Callable[[str, OSError], None] = lambda path, error: None,
-    ) -> dict[str, Any]:
+    ) -> dict[str, Any]:  # fmt: skip
         """Facts of another kind of files, made when they are first asked for and stored by content as all facts are.
 
         paths: files of the tree; those that cannot be read are left out, and on_error is told. kind: one of
@@ -183,15 +180,10 @@ class ExtractedFacts:
 
 
 def gather(
-    tree: Tree,
-    store: Store,
-    *,
-    jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    kind_of: Callable[[str], str | None] = kinds.kind_of,
-    second: Callable[[str], str | None] | None = None,
+    tree: Tree, store: Store, *, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
+    kind_of: Callable[[str], str | None] = kinds.kind_of, second: Callable[[str], str | None] | None = None,
     along: Callable[[], Searches] = dict,
-) -> ExtractedFacts:
+) -> ExtractedFacts:  # fmt: skip
     """Finds or makes the facts of every file whose kind is known.
 
     kind_of: the kind of facts wanted of a path, None for none; by its name when left out. second: the kind wanted of it
@@ -270,12 +262,9 @@ def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
 
 
 def _make(
-    gathered: ExtractedFacts,
-    unread: list[_Unread],
-    jobs: int,
-    progress: Callable[[int, int], None] | None,
+    gathered: ExtractedFacts, unread: list[_Unread], jobs: int, progress: Callable[[int, int], None] | None,
     along: Searches,
-) -> None:
+) -> None:  # fmt: skip
     """Reads the files, stores the facts of those whose content is not known, and notes what failed."""
     # Large files first: the last chunks are then small, and no worker is left alone with a large one.
     unread.sort(key=lambda file: (-file[0], file[1]))

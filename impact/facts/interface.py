@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 import msgspec
 
@@ -208,13 +209,10 @@ IDL_PARTS = {
 }
 
 
-class _Token:
-    __slots__ = ("kind", "offset", "text")
-
-    def __init__(self, kind: str, text: str, offset: int):
-        self.kind = kind
-        self.text = text
-        self.offset = offset
+class _Token(NamedTuple):
+    kind: str
+    text: str
+    offset: int
 
 
 class _Unreadable(Exception):

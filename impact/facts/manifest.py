@@ -59,25 +59,16 @@ class Manifest(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 # What a tag means, by REP 127 (format 1), REP 140 (format 2) and REP 149 (format 3).
-FORMAT_1 = {
-    "build_depend": ("build",),
-    "buildtool_depend": ("buildtool",),
-    "run_depend": ("build_export", "exec"),
-    "test_depend": ("test",),
+_IN_ALL_FORMATS = {
+    **{f"{kind}_depend": (kind,) for kind in ("build", "buildtool", "test")},
     "conflict": ("conflict",),
     "replace": ("replace",),
 }
+FORMAT_1 = {**_IN_ALL_FORMATS, "run_depend": ("build_export", "exec")}
 FORMAT_2 = {
+    **_IN_ALL_FORMATS,
     "depend": ("build", "build_export", "exec"),
-    "build_depend": ("build",),
-    "build_export_depend": ("build_export",),
-    "buildtool_depend": ("buildtool",),
-    "buildtool_export_depend": ("buildtool_export",),
-    "exec_depend": ("exec",),
-    "test_depend": ("test",),
-    "doc_depend": ("doc",),
-    "conflict": ("conflict",),
-    "replace": ("replace",),
+    **{f"{kind}_depend": (kind,) for kind in ("build_export", "buildtool_export", "exec", "doc")},
 }
 FORMAT_3 = {**FORMAT_2, "group_depend": ("group",), "member_of_group": ("member_of_group",)}
 TAGS = {1: FORMAT_1, 2: FORMAT_2, 3: FORMAT_3}

@@ -10,8 +10,11 @@ import codecs
 import re
 from bisect import bisect_right
 from collections.abc import Iterable
+from functools import cached_property
 from typing import NamedTuple
 from xml.parsers import expat
+
+import msgspec
 
 from .place import Problem
 
@@ -43,19 +46,16 @@ class Attribute(NamedTuple):
     listed: bool = False
 
 
-class Element:
+class Element(msgspec.Struct, eq=False):
     """An element in document order. parent: index into Document.elements, -1 for the root. text: its own text, children
     excluded, stripped; text_offset: where that starts (the tag's own start when there is none)."""
 
-    __slots__ = ("attributes", "name", "offset", "parent", "text", "text_offset")
-
-    def __init__(self, name: str, attributes: tuple[Attribute, ...], offset: int, parent: int):
-        self.name = name
-        self.attributes = attributes
-        self.offset = offset
-        self.parent = parent
-        self.text = ""
-        self.text_offset = offset
+    name: str
+    attributes: tuple[Attribute, ...]
+    offset: int
+    parent: int
+    text_offset: int
+    text: str = ""
 
     def get(self, name: str, default: str = "") -> str:
         """Value of an attribute, default when it is not there."""
@@ -69,18 +69,17 @@ class Document:
     """A scanned file: its text, its elements in order, what kept it from being well-formed. A line ends with a line
     feed."""
 
-    __slots__ = ("_starts", "elements", "problems", "text")
-
     def __init__(self, text: str, elements: Iterable[Element] = (), problems: tuple[Problem, ...] = ()):
         self.text = text
         self.elements = list(elements)
         self.problems = problems
-        self._starts: list[int] | None = None
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [0, *(line.end() for line in re.finditer("\n", self.text))]
 
     def place(self, offset: int) -> tuple[int, int]:
         """Line and column of an offset, both from 1."""
-        if self._starts is None:
-            self._starts = [0, *(line.end() for line in re.finditer("\n", self.text))]
         line = bisect_right(self._starts, offset)
         return line, offset - self._starts[line - 1] + 1
 
@@ -182,7 +181,7 @@ def scan(data: bytes) -> Document:
                 Attribute(m[1], unescape(m[m.lastindex or 2]), base + m.start(m.lastindex or 2))
                 for m in ATTRIBUTE.finditer(rest)
             )
-        elements.append(Element(name, attributes, start, open_[-1] if open_ else -1))
+        elements.append(Element(name, attributes, start, open_[-1] if open_ else -1, start))
         if not rest.endswith("/"):
             open_.append(len(elements) - 1)
     return Document(text, elements, well_formed(data))

@@ -18,7 +18,7 @@ from typing import Any
 import msgspec
 
 from ...edges.documents import load_yaml
-from .cpp import scan
+from .cpp.lexical import scan
 from .place import Problem
 from .python.constants import Constants, module_constants
 from .python.source import read

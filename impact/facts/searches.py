@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from .condition import Condition
-from .cpp import CppFile, places_of
+from .cpp.lexical import CppFile, places_of
 from .place import Problem
 from .usage import Rows, UsageTable, WatchedUse, find_uses, initialises, uses_of
 

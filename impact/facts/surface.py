@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator
 import msgspec
 
 from .condition import Condition
-from .cpp import Include
+from .cpp.lexical import Include
 from .place import Problem
 
 

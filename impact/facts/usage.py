@@ -14,8 +14,9 @@ from functools import lru_cache
 import msgspec
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, scan, standing, text_of
+from .cpp.lexical import KEYWORDS, CppFile, scan, standing, text_of
 from .expressions import has_needed, last_literals, needed_words
+from .python.python2 import mask
 
 _MEMBER = r"(?:->|\.)\s*"
 
@@ -80,26 +81,10 @@ _MOST_BRACKETS = 16
 _LONGEST_TYPES = 2000
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
-_NOT_A_TYPE = frozenset(
-    [
-        "return",
-        "else",
-        "throw",
-        "new",
-        "co_return",
-        "co_await",
-        "co_yield",
-        "case",
-        "and",
-        "or",
-        "not",
-        "do",
-        "in",
-        "if",
-        "elif",
-        "while",
-    ]
-)
+_NOT_A_TYPE = frozenset((
+    "return", "else", "throw", "new", "co_return", "co_await", "co_yield", "case", "and", "or", "not", "do", "in", "if",
+    "elif", "while",
+))  # fmt: skip
 _KEYWORD_TEXT = " ".join(sorted(KEYWORDS))
 _KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
@@ -507,26 +492,10 @@ def _made_shared(name: str, text: str) -> bool:
     )
 
 
-_PYTHON_HIDDEN = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*(?:"""|\Z)|\'\'\'(?:[^\'\\]|\\.|\'(?!\'\'))*(?:\'\'\'|\Z)'
-    r'|"(?:[^"\\\n]|\\.)*"?|\'(?:[^\'\\\n]|\\.)*\'?|#[^\n]*',
-    re.DOTALL,
-)
-_INSIDE = re.compile(r"[^\n]")
-
-
 @lru_cache(maxsize=2)
 def python_text(data: bytes) -> str:
     """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
-    text = text_of(data)
-
-    def blank(match: re.Match[str]) -> str:
-        hidden = match.group()
-        if hidden[0] == "#" or len(hidden) < 2:
-            return " " * len(hidden)
-        return '"' + _INSIDE.sub(" ", hidden[1:-1]) + ('"' if hidden[-1] != "\n" else "\n")
-
-    return _PYTHON_HIDDEN.sub(blank, text)
+    return mask(text_of(data)).replace("'", '"')
 
 
 _YAML_COMMENT = re.compile(r"(?m)(?:^|(?<=[ \t]))#.*$")

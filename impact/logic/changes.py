@@ -141,22 +141,9 @@ def _change(
     topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
     near = ", ".join(sorted(at.topics)) or said.variable
     return LogicChange(
-        kind,
-        at.package,
-        at.path,
-        said.line,
-        said.function,
-        ", ".join(said.nodes),
-        near,
-        topics,
-        said.type,
-        old,
-        new,
+        kind, at.package, at.path, said.line, said.function, ", ".join(said.nodes), near, topics, said.type, old, new,
         why,
-    )
-
-
-# A statement
+    )  # fmt: skip
 
 
 def _compared(
@@ -188,8 +175,9 @@ def _compared(
         old_ways = [way for way in first.ways if way.start in was]
         new_ways = [way for way in second.ways if way.start in is_now]
         if not old_ways or not new_ways:
-            if _said_of(old_ways or new_ways):
-                starts.append(_only(old_ways, new_ways))
+            start = (new_ways or old_ways)[0].start
+            if start.kind not in _UNSAID:
+                starts.append(f"{'also' if new_ways else 'no longer'} on {_named(start)}")
             else:
                 kinds.append("widened" if new_ways else "tightened")
                 whys.append(f"{'also' if new_ways else 'no longer'} from {_unnamed(new_ways or old_ways)}")
@@ -336,14 +324,6 @@ def _plain(detail: str) -> str:
     return text.strip("/") if "/" in text else text
 
 
-def _said_of(ways: Sequence[Path]) -> bool:
-    return ways[0].start.kind not in _UNSAID
-
-
-def _only(old: Sequence[Path], new: Sequence[Path]) -> str:
-    return f"also on {_named(new[0].start)}" if new else f"no longer on {_named(old[0].start)}"
-
-
 def _unnamed(ways: Sequence[Path]) -> str:
     of = next((gate.of for way in ways for gate in way.gates), "")
     return f"`{of}`" if of else "another caller"
@@ -364,9 +344,6 @@ def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> 
 def _named(start: StatementStart) -> str:
     kind = {"start": "the start", "subscriber": "messages of", "thread": "loop"}.get(start.kind, start.kind)
     return f"{kind} `{start.detail}`" if start.detail else kind
-
-
-# A publisher
 
 
 def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iterator[LogicChange]:
@@ -404,9 +381,6 @@ def _of_ros1(*outlets: Outlet) -> bool:
 
 def _offer(outlet: Outlet) -> str:
     return ", ".join(f"{name} {setting}" for name, setting in outlet.offers) or outlet.written
-
-
-# For people
 
 
 def _when(verb: str, said: Said) -> str:

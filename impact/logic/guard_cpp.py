@@ -228,8 +228,6 @@ class _Reader:
         part = node.child_by_field_name(name)
         return self.opaque(node) if part is None else self.term(part, depth)
 
-    # Kinds of expression
-
     def read_binary_expression(self, node: Any, depth: int) -> Term:
         operands, operators = self.spine(node)
         result = self.term(operands[0], depth)
@@ -272,8 +270,7 @@ class _Reader:
             return NULL
         return Term("name", text)
 
-    read_qualified_identifier = read_identifier
-    read_template_function = read_identifier
+    read_qualified_identifier = read_template_function = read_identifier
 
     def read_field_expression(self, node: Any, depth: int) -> Term:
         field = node.child_by_field_name("field")
@@ -368,9 +365,7 @@ class _Reader:
     def read_string_literal(self, node: Any, depth: int) -> Term:
         return Term("string", re.sub(r"\s*\n\s*", "", self.said(node)))
 
-    read_raw_string_literal = read_string_literal
-    read_concatenated_string = read_string_literal
-    read_char_literal = read_string_literal
+    read_raw_string_literal = read_concatenated_string = read_char_literal = read_string_literal
 
     def read_assignment_expression(self, node: Any, depth: int) -> Term:
         """`a = b` has the value of b, which a stands for further in."""
@@ -404,8 +399,7 @@ class _Reader:
     def read_true(self, node: Any, depth: int) -> Term:
         return {"true": TRUE, "false": FALSE, "null": NULL}[node.type]
 
-    read_false = read_true
-    read_null = read_true
+    read_false = read_null = read_true
 
     def read_this(self, node: Any, depth: int) -> Term:
         return Term("name", "this")

@@ -27,17 +27,9 @@ from .guard_terms import (
 
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 _OPERATORS = {
-    ast.Div: "/",
-    ast.FloorDiv: "//",
-    ast.Mod: "%",
-    ast.Pow: "**",
-    ast.LShift: "<<",
-    ast.RShift: ">>",
-    ast.BitOr: "|",
-    ast.BitAnd: "&",
-    ast.BitXor: "^",
-    ast.MatMult: "@",
-}
+    ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%", ast.Pow: "**", ast.LShift: "<<", ast.RShift: ">>", ast.BitOr: "|",
+    ast.BitAnd: "&", ast.BitXor: "^", ast.MatMult: "@",
+}  # fmt: skip
 _MOST_MEMBERS = 50
 
 
@@ -183,8 +175,6 @@ class _Reader:
         if read is None or depth > DEEPEST:
             return self.opaque(node)
         return read(self, node, depth + 1)
-
-    # Kinds of expression
 
     def read_BoolOp(self, node: ast.BoolOp, depth: int) -> Term:
         parts = [self.term(part, depth) for part in node.values]

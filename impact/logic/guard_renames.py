@@ -17,22 +17,11 @@ _TOKENS: dict[Language, re.Pattern[str]] = {
     "cpp": re.compile(_TOKEN.replace("COMMENT", r"//[^\n]*|/\*.*?\*/|\#[^\n]*"), re.DOTALL | re.VERBOSE),
     "python": re.compile(_TOKEN.replace("COMMENT", r"\#[^\n]*"), re.DOTALL | re.VERBOSE),
 }
-_KEYWORDS = frozenset(("and", "or", "not", "in", "is", "if", "elif", "else", "return", "while", "for", "case", "del"))
-_KEYWORDS |= {
-    "raise",
-    "yield",
-    "await",
-    "lambda",
-    "from",
-    "import",
-    "as",
-    "with",
-    "global",
-    "nonlocal",
-    "new",
-    "delete",
-}
-_KEYWORDS |= {"throw", "goto", "co_return", "co_await", "typename", "using", "namespace", "print", "assert"}
+_KEYWORDS = frozenset((
+    "and", "or", "not", "in", "is", "if", "elif", "else", "return", "while", "for", "case", "del", "raise", "yield",
+    "await", "lambda", "from", "import", "as", "with", "global", "nonlocal", "new", "delete", "throw", "goto",
+    "co_return", "co_await", "typename", "using", "namespace", "print", "assert",
+))  # fmt: skip
 _TYPE_ENDS = frozenset(("*", "&", ">"))
 _MOST_STATEMENTS = 20000
 

@@ -72,8 +72,6 @@ class Solver:
         self.equated: dict[Term, set[Term]] = {}
         self.largest = 0
 
-    # Questions
-
     def relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
         """Whether new implies old, and old implies new (None: true of some types only), and whether that is so of
         conditions that can hold at all. Raises Undecided."""
@@ -249,8 +247,6 @@ class Solver:
         if term.kind == "call":
             return owner_of(term.parts[0])[1] in _COUNTS
         return term.kind == "size" or (term.kind == "op" and term.text == "cut")
-
-    # Terms to formulas
 
     def fresh(self, sort: str) -> str:
         name = f"{sort[0].lower()}{len(self.script)}"

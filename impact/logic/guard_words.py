@@ -148,14 +148,10 @@ def _is_block(piece: Conjunct) -> bool:
 
 
 def _listed(pieces: Sequence[Conjunct]) -> str:
-    quoted = list(dict.fromkeys(_quoted(piece) for piece in pieces))
+    quoted = list(dict.fromkeys(_shown(piece.text) for piece in pieces))
     if len(quoted) > _MOST:
         quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
     return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])
-
-
-def _quoted(piece: Conjunct) -> str:
-    return _shown(piece.text)
 
 
 def _shown(text: str) -> str:

@@ -1,7 +1,7 @@
 """What happened to the conditions of a publish statement between two revisions.
 
-    compare(old, new)            # "tightened", "widened", "equivalent" or "changed"
-    explain(old, new)            # "only when `scan_received_` too"
+    compare_ways(old, new)       # "tightened", "widened", "equivalent" or "changed"
+    explain_ways(old, new)       # "only when `scan_received_` too"
 
 All of it is about the same moment: a name, and a call with the same arguments, has the same value wherever it stands in
 the two conditions. That calls have effects and that variables are assigned between two guards is not seen, save where
@@ -44,13 +44,9 @@ class NameReading(NamedTuple):
 AS_WRITTEN = NameReading()
 
 
-def compare(old: Guards, new: Guards, reading: NameReading = AS_WRITTEN) -> Kind:
-    """What happened to the guards of one statement, outermost first; `changed` when the time was not enough."""
-    return compare_ways((old,), (new,), reading)
-
-
 def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kind:
-    """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
+    """What happened to the guards of a statement, of each of the ways that lead to it outermost first: it runs when all
+    of one way hold; `changed` when the time was not enough."""
     if not reading.renames and _written(old) == _written(new):
         return "equivalent"
     before, after, solver = _sides(old, new, reading)
@@ -69,14 +65,9 @@ def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kin
     return "widened" if backward and forward is False else "changed"
 
 
-def explain(old: Guards, new: Guards, reading: NameReading = AS_WRITTEN) -> str:
+def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str:
     """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
-    return explain_ways((old,), (new,), reading)
-
-
-def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str:
-    """As explain(), for a statement that several ways lead to."""
     if compare_ways(old, new, reading) == "equivalent":
         return ""
     before, after, solver = _sides(old, new, reading)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
+from ...edges.answers import answer_once
 from ...edges.limits import limits
 from ..facts import kinds
 from ..model.package import role_of_folder
@@ -84,12 +85,7 @@ class CommitHistory:
         self.folder = _below(os.fsdecode(repository), self.repo)
         self._packages: dict[Any, tuple[_Found, ...]] = {}
         self._files: dict[tuple[Any, bool], tuple[PackageFile, ...]] = {}
-        self._manifests: dict[Any, tuple[str, int]] = {}
-        self._scripts: dict[Any, bool] = {}
-        self._keys: dict[tuple[Any, str, int], tuple[tuple[PackageFile, ...], bytes]] = {}
         self._roots: dict[str, dict[str, PackageState]] = {}
-
-    # Commits
 
     def commits(self, range: str = "", number: int | None = None, since: str = "") -> list[Commit]:
         """The commits that are compared with their parent, newest first; merges are left out, each side's commits are
@@ -134,8 +130,6 @@ class CommitHistory:
         import pygit2
 
         return pygit2.Oid(hex=self.tree.at(revision).commit)
-
-    # Packages
 
     def packages(self, commit: str) -> Mapping[str, PackageState]:
         """The packages of a commit by their names; of several with one name, those after the first by name and path.
@@ -186,22 +180,19 @@ class CommitHistory:
             path = _joined(self.folder, found.path)
             name, ros = self._manifest(found.manifest, found.rosbuild)
             name = name or path.rpartition("/")[2] or self.name
-            files, key = self._content(found, name, ros)
+            files, key = self._content(found.folder, found.rosbuild, name, ros)
             state = PackageState(name, path, ros, files, key)
             yield (name if name not in seen else f"{name} in {path}"), state
             seen.add(name)
 
-    def _content(self, found: _Found, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
-        asked = (found.folder, name, ros)
-        known = self._keys.get(asked)
-        if known is None:
-            files = self._listed(found.folder, found.rosbuild, top=True)
-            files = tuple(file for file in files if role_of_folder(file.path) != "test")
-            stamp = hashlib.sha1(f"{name} {ros}\n".encode())
-            for file in files:
-                stamp.update(f"{file.path} {file.id} {file.kind}\n".encode("utf-8", "surrogateescape"))
-            known = self._keys[asked] = (files, stamp.digest())
-        return known
+    @answer_once
+    def _content(self, folder: Any, rosbuild: bool, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
+        files = self._listed(folder, rosbuild, top=True)
+        files = tuple(file for file in files if role_of_folder(file.path) != "test")
+        stamp = hashlib.sha1(f"{name} {ros}\n".encode())
+        for file in files:
+            stamp.update(f"{file.path} {file.id} {file.kind}\n".encode("utf-8", "surrogateescape"))
+        return files, stamp.digest()
 
     def _found(self, folder, level: int = 0) -> tuple[_Found, ...]:
         """The packages at and below a folder, in the order of their paths. Raises KeyError where there are too many."""
@@ -226,19 +217,12 @@ class CommitHistory:
         known = self._packages[folder] = tuple(found)
         return known
 
+    @answer_once
     def _manifest(self, blob, rosbuild: bool) -> tuple[str, int]:
         """Name (empty where the manifest has none) and generation that a manifest tells."""
-        known = self._manifests.get(blob)
-        if known is None:
-            name, ros = "", 1
-            data = b"" if rosbuild else _COMMENT.sub(b"", self.read(blob)[:200_000])
-            match = _NAME.search(data)
-            if match:
-                name = match[1].decode("utf-8", "replace")
-            if _AMENT.search(data):
-                ros = 2
-            known = self._manifests[blob] = (name, ros)
-        return known
+        data = b"" if rosbuild else _COMMENT.sub(b"", self.read(blob)[:200_000])
+        match = _NAME.search(data)
+        return match[1].decode("utf-8", "replace") if match else "", 2 if _AMENT.search(data) else 1
 
     def _listed(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[PackageFile, ...]:
         """The files of interest at and below a folder, packages below a rosbuild package left out. Raises KeyError
@@ -266,13 +250,9 @@ class CommitHistory:
             self._files[folder, rosbuild] = known
         return known
 
+    @answer_once
     def _is_python(self, blob) -> bool:
-        known = self._scripts.get(blob)
-        if known is None:
-            known = self._scripts[blob] = kinds.script_kind(self.read(blob)[:512]) == "python"
-        return known
-
-    # Contents
+        return kinds.script_kind(self.read(blob)[:512]) == "python"
 
     def content(self, blob) -> bytes:
         """The bytes of a file. Raises OSError where the object is missing (a partial clone), damaged or too large."""

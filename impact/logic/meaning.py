@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 
+from ...edges.answers import answer_once
 from ..facts.flow import FlowExpr
 from ..model.flow.code import FlowCode, Fn
 from ..model.flow.graph import GuardAt
@@ -24,19 +25,15 @@ class Meaning:
 
     def __init__(self, code: FlowCode):
         self.code = code
-        self._known: dict[tuple[str, str, str], str] = {}
 
+    @answer_once
     def of(self, guard: GuardAt) -> str:
         """What a guard's text means; empty when that is what it says."""
         if guard.kind not in ("if", "unless", "while"):
             return ""
-        asked = (guard.path, guard.of, guard.text)
-        known = self._known.get(asked)
-        if known is None:
-            fn = self.code.by_name.get((guard.path, guard.of))
-            found = self._expanded(guard.text, fn, 0) if fn is not None else guard.text
-            known = self._known[asked] = found if found != guard.text and len(found) <= _LONGEST else ""
-        return known
+        fn = self.code.by_name.get((guard.path, guard.of))
+        found = self._expanded(guard.text, fn, 0) if fn is not None else guard.text
+        return found if found != guard.text and len(found) <= _LONGEST else ""
 
     def _expanded(self, text: str, fn: Fn, depth: int) -> str:
         if depth >= _DEEPEST or len(text) > _LONGEST:

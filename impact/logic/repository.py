@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ...edges import processes
+from ...edges.answers import answer_once
 from ..facts import kinds
 from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .changes import LogicChange, ReachedSubscriber, Side
@@ -243,9 +244,6 @@ def _reaching(change: LogicChange, listeners: Mapping[str, list[ReachedSubscribe
     return msgspec.structs.replace(change, reaches=tuple(merged)) if merged else change
 
 
-# A commit
-
-
 class _Step(NamedTuple):
     """A commit with the packages that differ from its parent's."""
 
@@ -289,16 +287,12 @@ def _renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
     return history.renames(step.commit.parent, step.commit.id)
 
 
-# Digests
-
-
 class _Digests:
     """Digests by the keys of the states they are of, packed until they are asked for."""
 
     def __init__(self, store: Store):
         self.store = store
         self.packed: dict[bytes, bytes] = {}
-        self._inlets: dict[bytes, tuple] = {}
 
     def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
         """All that are known, those of these keys that the store has among them."""
@@ -311,11 +305,9 @@ class _Digests:
         self.packed.update(rows)
         self.store.remember("digest", [(digest_key(key), unpack(data)) for key, data in rows])
 
+    @answer_once
     def inlets(self, key: bytes):
-        known = self._inlets.get(key)
-        if known is None:
-            known = self._inlets[key] = decoded(self.packed.get(key)).inlets
-        return known
+        return decoded(self.packed.get(key)).inlets
 
 
 def _chunked(states: Iterable[PackageState]) -> list[list[PackageState]]:
@@ -376,9 +368,6 @@ def _facts(
         fresh.append((row, pack(kinds.encode(extracted))))
         yield (content, kind), extracted.facts
     store.put(fresh)
-
-
-# Keys
 
 
 def _commit_key(commit: str, folder: str) -> bytes:

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from ...edges.answers import answer_once
 from ..facts import kinds
 from ..facts.flow import FlowCall, FlowFile
 from ..model.flow.code import FlowCode, Fn, tail
@@ -157,9 +158,6 @@ class _Digester:
         self.join, self.state = join, state
         self.running = join.running()
         self.meaning = Meaning(join.code)
-        self._fixed: dict[tuple[str, str, str], bool] = {}
-        self._calling: dict[int, bool] = {}
-        self._changed: dict[int, frozenset[str]] = {}
         # What a framework subscribes to by itself (a transform listener) makes nothing run.
         self.implied = {
             (site.use.fn.source.path, site.use.call.line)
@@ -243,13 +241,12 @@ class _Digester:
                 for topic in self._full(site._replace(names=(value,))):
                     yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
 
-    # Statements
-
     def _said(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
         use, join = statement.use, self.join
         fn = use.fn
         own = join.guards(fn, use.call.guard)
-        found = [way for way in join.ways(fn) if not self._is_implied(way.trigger)]
+        led = ((way, way.trigger) for way in join.ways(fn))
+        found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
         found = found or [Way(Trigger("unknown", "", "", 0))]
         ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
         owners = [owner for owner in self._owners(fn) if owner is not None]
@@ -258,9 +255,6 @@ class _Digester:
             fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
-
-    def _is_implied(self, trigger: Trigger) -> bool:
-        return trigger.kind == "subscriber" and (trigger.path, trigger.line) in self.implied
 
     def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
         start = StatementStart(trigger.kind, trigger.detail)
@@ -280,16 +274,12 @@ class _Digester:
             start = StatementStart(start.kind)
         return Path(start, tuple(gates))
 
+    @answer_once
     def _is_fixed(self, guard: GuardAt) -> bool:
         """Whether a guard asks for variables alone that its function, and what that calls of the code, leaves alone."""
-        asked = (guard.path, guard.of, guard.text)
-        known = self._fixed.get(asked)
-        if known is None:
-            fn = self.join.code.by_name.get((guard.path, guard.of))
-            plain = guard.kind in ("if", "unless") and not _CALLS.search(guard.text)
-            known = plain and fn is not None and all(self._stays(name, fn) for name in _NAMES.findall(guard.text))
-            self._fixed[asked] = known
-        return known
+        fn = self.join.code.by_name.get((guard.path, guard.of))
+        plain = guard.kind in ("if", "unless") and not _CALLS.search(guard.text)
+        return plain and fn is not None and all(self._stays(name, fn) for name in _NAMES.findall(guard.text))
 
     def _stays(self, name: str, fn: Fn) -> bool:
         if name in _WORDS or name.isupper():
@@ -301,21 +291,15 @@ class _Digester:
             return False
         return name not in self._changes(fn) and (local or not self._calls_own(fn))
 
+    @answer_once
     def _changes(self, fn: Fn) -> frozenset[str]:
         """The variables of which a function changes more than by assigning to them."""
-        known = self._changed.get(id(fn))
-        if known is None:
-            written = (one.path for one in fn.facts.accesses if one.kind != "read")
-            changed = (path.removeprefix("this.").partition(".")[0] for path in written)
-            known = self._changed[id(fn)] = frozenset(changed)
-        return known
+        written = (one.path for one in fn.facts.accesses if one.kind != "read")
+        return frozenset(path.removeprefix("this.").partition(".")[0] for path in written)
 
+    @answer_once
     def _calls_own(self, fn: Fn) -> bool:
-        known = self._calling.get(id(fn))
-        if known is None:
-            code = self.join.code
-            known = self._calling[id(fn)] = any(code.targets(call.callee, fn) for call in fn.facts.calls)
-        return known
+        return any(self.join.code.targets(call.callee, fn) for call in fn.facts.calls)
 
     def _pace(self, guard: GuardAt) -> str:
         """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""
@@ -376,9 +360,6 @@ _AND = ("&&", "and")
 def _is_live(text: str) -> bool:
     plain = text.strip()
     return plain in _LIVE or bool(_OK.fullmatch(plain))
-
-
-# What is built
 
 
 def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:

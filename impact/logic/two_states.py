@@ -153,9 +153,6 @@ def _by(
     return found
 
 
-# Digests
-
-
 def _digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
     """The digests of some packages, in their order; those that are not known are made and kept."""
     store: Store = workspace.gathered.store

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include
+from ..facts.cpp.lexical import CppFile, Include
 from ..facts.interface import Interface
 from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass

@@ -22,17 +22,6 @@ from .paths import IGNORE_MARKERS, LEAVES, PathProblem, Tree, TreeEntry, TreeErr
 from .working import WorkingTree
 
 __all__ = [
-    "IGNORE_MARKERS",
-    "LEAVES",
-    "GitTree",
-    "JoinedTree",
-    "PathProblem",
-    "Tree",
-    "TreeEntry",
-    "TreeError",
-    "WorkingTree",
-    "at_merge_bases",
-    "blob_id",
-    "inside",
-    "shown",
-]
+    "IGNORE_MARKERS", "LEAVES", "GitTree", "JoinedTree", "PathProblem", "Tree", "TreeEntry", "TreeError", "WorkingTree",
+    "at_merge_bases", "blob_id", "inside", "shown",
+]  # fmt: skip

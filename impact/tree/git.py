@@ -7,9 +7,7 @@ import posixpath
 from collections import Counter
 from typing import Any
 
-from ...edges.limits import limits
 from .paths import (
-    CHARACTERS,
     IGNORE_MARKERS,
     LEAVES,
     LONGEST_PATH,
@@ -22,8 +20,6 @@ from .paths import (
     join,
     largest_file,
     shown,
-    too_long,
-    too_many,
     within,
 )
 from .repository import (
@@ -56,13 +52,9 @@ class GitTree(Walked):
     """
 
     def __init__(
-        self,
-        repository: str | os.PathLike[str],
-        revision: str = "HEAD",
-        folder: str = "",
-        *,
+        self, repository: str | os.PathLike[str], revision: str = "HEAD", folder: str = "", *,
         follow_links: bool = False,
-    ):
+    ):  # fmt: skip
         self.repository = os.fsdecode(repository)
         self.follow_links = follow_links
         opened = open_repository(self.repository)
@@ -76,18 +68,13 @@ class GitTree(Walked):
         self.revision = revision
         short = self.commit[:10]
         self.label = short if self.commit.startswith(revision) else f"{revision} ({short})"
-        self.problems: list[PathProblem] = []
-        self.skipped: list[PathProblem] = []
-        self.aliases: dict[str, str] = {}
+        self._begin()
         self.folder = inside(folder) or ""
         self.name = name_of(self.repositories[""], self.folder)
         self._top = tree
-        self._entries: list[TreeEntry] | None = None
         self._blobs: dict[str, Any] = {}
         self._folders: set[str] = set()
         self._places: Counter[Any] = Counter()
-        self._left = limits().entries
-        self._characters_left = limits().entries * CHARACTERS
         self._steps = _STEPS_AT_MOST
         if self.folder and self._find(self.folder)[1] != _FOLDER:
             raise TreeError(f"`{shown(self.folder)}` is no folder of {self.label}; give one that this revision has")
@@ -176,16 +163,10 @@ class GitTree(Walked):
         if markers:
             self.skipped.append(PathProblem(folder or ".", f"holds {min(markers)}"))
             return
-        if len(items) > self._left:
-            self.problems.append(PathProblem(folder or ".", too_many("files and folders", limits().entries)))
-            items = items[: self._left]
-        self._left -= len(items)
-        self._characters_left -= len(items) * len(folder)
-        if self._characters_left < 0 < self._left:
-            self.problems.append(PathProblem(folder[:100] + "…", too_long(limits().entries)))
-            self._left = 0
+        room = max(self._left, 0)
+        self._count(folder, len(items), folder[:100] + "…")
         self._folders.add(folder)
-        for name, mode, item in items:
+        for name, mode, item in items[:room]:
             path = join(folder, name)
             if mode == MODE_FOLDER:
                 if name not in VERSION_CONTROL:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from .git import GitTree
 from .paths import PathProblem, Tree, TreeEntry, TreeError, inside, join, shown, within
@@ -85,23 +85,20 @@ class JoinedTree:
         tree, inner = self._inner(path)
         return tree.read_with_id(inner, limit)
 
-    def exists(self, path: str) -> bool:
+    def _stands(self, path: str, asked: Callable[[Tree, str], bool]) -> bool:
+        """Whether a path leads to a tree, or to what a tree says of it when asked."""
         clean = inside(path)
         if clean is None:
             return False
         if any(within(mount, clean) for mount in self.mounts):
             return True
-        mount = self._mount(clean)
-        return mount is not None and self._inner(clean)[0].exists(self._inner(clean)[1])
+        return self._mount(clean) is not None and asked(*self._inner(clean))
+
+    def exists(self, path: str) -> bool:
+        return self._stands(path, lambda tree, inner: tree.exists(inner))
 
     def is_dir(self, path: str) -> bool:
-        clean = inside(path)
-        if clean is None:
-            return False
-        if any(within(mount, clean) for mount in self.mounts):
-            return True
-        mount = self._mount(clean)
-        return mount is not None and self._inner(clean)[0].is_dir(self._inner(clean)[1])
+        return self._stands(path, lambda tree, inner: tree.is_dir(inner))
 
     def memory_key(self) -> bytes | None:
         return self.mounts[""].memory_key() if "" in self.mounts else None

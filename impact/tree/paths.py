@@ -11,31 +11,8 @@ from typing import Protocol
 
 import msgspec
 
-from ...edges.console import UserError
-from ...edges.console import visible as shown
+from ...edges.console import UserError, visible
 from ...edges.limits import limits
-
-__all__ = [
-    "CHARACTERS",
-    "IGNORE_MARKERS",
-    "LEAVES",
-    "LONGEST_PATH",
-    "VERSION_CONTROL",
-    "PathProblem",
-    "Tree",
-    "TreeEntry",
-    "TreeError",
-    "Walked",
-    "blob_id",
-    "inside",
-    "join",
-    "largest_file",
-    "outside",
-    "shown",
-    "too_long",
-    "too_many",
-    "within",
-]  # fmt: skip
 
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
@@ -45,6 +22,7 @@ VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
 CHARACTERS = 100
 # What a working copy can hold: Linux opens no longer paths (PATH_MAX).
 LONGEST_PATH = 4096
+shown = visible
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
 
 
@@ -158,16 +136,6 @@ def outside(path: str) -> OSError:
     return FileNotFoundError(errno.ENOENT, "outside of the tree", path)
 
 
-def too_many(what: str, number: int) -> str:
-    """The problem of a tree that holds too much of something."""
-    return f"more than {number:,} {what}, the rest is left out"
-
-
-def too_long(entries: int) -> str:
-    """The problem of a tree whose paths are too long, all together. entries: files and folders that it may hold."""
-    return f"the paths have {entries * CHARACTERS:,} characters in all, the rest is left out"
-
-
 @cache
 def largest_file() -> int:
     """Bytes that a file of a workspace may have at most, whatever kind it is of."""
@@ -190,9 +158,26 @@ def _name_problems(entries: Iterable[TreeEntry]) -> Iterator[PathProblem]:
 class Walked:
     """A tree that is walked once, when its entries are first asked for."""
 
-    problems: list[PathProblem]
-    skipped: list[PathProblem]
-    _entries: list[TreeEntry] | None
+    def _begin(self) -> None:
+        self.problems: list[PathProblem] = []
+        self.skipped: list[PathProblem] = []
+        self.aliases: dict[str, str] = {}
+        self._entries: list[TreeEntry] | None = None
+        self._left = limits().entries
+        self._characters_left = self._left * CHARACTERS
+
+    def _count(self, folder: str, items: int, shown: str) -> None:
+        """Takes what a folder holds from what the tree may hold; names the folder where that is used up."""
+        most = limits().entries
+        if items > self._left:
+            message = f"more than {most:,} files and folders, the rest is left out"
+            self.problems.append(PathProblem(folder or ".", message))
+        self._left -= items
+        self._characters_left -= items * len(folder)
+        if self._characters_left < 0 < self._left:
+            message = f"the paths have {most * CHARACTERS:,} characters in all, the rest is left out"
+            self.problems.append(PathProblem(shown, message))
+            self._left = 0
 
     def _walk(self, found: list[TreeEntry]) -> None:
         raise NotImplementedError

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from ...edges import files
+from ...edges.answers import answer_once
 from ...edges.limits import KB, limits, size_text
 from .ignore import git_folder
 from .paths import LONGEST_PATH, TreeError, shown
@@ -45,7 +46,8 @@ def open_repository(place: str) -> OpenedRepository:
     """The repository at or above a folder. Raises TreeError."""
     import pygit2
 
-    _trust_any_owner(pygit2)
+    # Git refuses repositories of other users because it would run their hooks. Here only objects are read.
+    pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
     try:
         check = _Check()
         check.around(os.path.realpath(place))
@@ -61,11 +63,6 @@ def open_repository(place: str) -> OpenedRepository:
         named = f"`{shown(str(error.filename))}`: " if isinstance(error, OSError) and error.filename else ""
         text = f"the git repository `{shown(place)}` cannot be opened: {named}{shown(str(reason))}; repair or remove it"
         raise TreeError(text) from None
-
-
-def _trust_any_owner(pygit2) -> None:
-    # Git refuses repositories of other users because it would run their hooks. Here only objects are read.
-    pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
 
 
 class _Check:
@@ -272,9 +269,6 @@ class RepositoryObjects:
         self._refused = opened.refused
         self._loose = opened.loose
         self._faults = (KeyError, ValueError, TypeError, AttributeError, pygit2.GitError)
-        self._folders: dict[Any, tuple[tuple[str, int, Any], ...]] = {}
-        self._names: dict[Any, dict[str, tuple[int, Any]]] = {}
-        self._links: dict[Any, str] = {}
         self._header = getattr(opened.repository.odb, "read_header", None)
 
     def size(self, oid: Any) -> int:
@@ -318,41 +312,36 @@ class RepositoryObjects:
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
+    @answer_once
     def folder(self, oid: Any) -> tuple[tuple[str, int, Any], ...]:
         """(name, mode, id) of everything in a folder; names that no file can have are left out."""
-        listing = self._folders.get(oid)
-        if listing is None:
-            kind, size = self._sized(oid)
-            if kind != _TREE:
-                raise OSError(errno.EIO, "its object is not a folder")
-            if size > limits().object:
-                raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
-            self._check(oid)
-            try:
-                listing = tuple(
-                    (name, int(item.filemode), item.id)
-                    for item in self._repo[oid]
-                    if "/" not in (name := item.raw_name.decode("utf-8", "surrogateescape"))
-                    and name not in ("", ".", "..")
-                )
-            except self._faults:
-                raise OSError(errno.EIO, DAMAGED) from None
-            self._folders[oid] = listing
-        return listing
+        kind, size = self._sized(oid)
+        if kind != _TREE:
+            raise OSError(errno.EIO, "its object is not a folder")
+        if size > limits().object:
+            raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
+        self._check(oid)
+        try:
+            return tuple(
+                (name, int(item.filemode), item.id)
+                for item in self._repo[oid]
+                if "/" not in (name := item.raw_name.decode("utf-8", "surrogateescape")) and name not in ("", ".", "..")
+            )
+        except self._faults:
+            raise OSError(errno.EIO, DAMAGED) from None
+
+    @answer_once
+    def _entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
+        return {name: (mode, item) for name, mode, item in self.folder(oid)}
 
     def entry(self, oid: Any, name: str) -> tuple[int, Any] | None:
         """(mode, id) of what a folder has under a name."""
-        names = self._names.get(oid)
-        if names is None:
-            names = self._names[oid] = {each: (mode, item) for each, mode, item in self.folder(oid)}
-        return names.get(name)
+        return self._entries(oid).get(name)
 
+    @answer_once
     def link(self, oid: Any) -> str:
         """What a link leads to."""
-        target = self._links.get(oid)
-        if target is None:
-            target = self._links[oid] = self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
-        return target
+        return self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
 
 
 def name_of(place: str, folder: str) -> str:

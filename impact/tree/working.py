@@ -14,7 +14,6 @@ from ...edges import files
 from ...edges.limits import limits
 from .ignore import Index, enclosing_repository
 from .paths import (
-    CHARACTERS,
     IGNORE_MARKERS,
     LEAVES,
     VERSION_CONTROL,
@@ -28,8 +27,6 @@ from .paths import (
     largest_file,
     outside,
     shown,
-    too_long,
-    too_many,
     within,
 )
 
@@ -56,18 +53,13 @@ class WorkingTree(Walked):
         self.name = os.path.basename(self.root)
         self.label = shown(self.name or self.root)
         self.follow_links = follow_links
-        self.problems: list[PathProblem] = []
-        self.skipped: list[PathProblem] = []
-        self.aliases: dict[str, str] = {}
+        self._begin()
         self._real_root = os.path.realpath(self.root)
         self._device = os.stat(self.root).st_dev
-        self._entries: list[TreeEntry] | None = None
         self._repositories: dict[str, str] = {}
         self._folders: set[str] = set()
         self._stats: dict[str, tuple[int, int, int, int]] = {}
         self._devices: dict[str, int] = {}
-        self._left = limits().entries
-        self._characters_left = limits().entries * CHARACTERS
         self._ids: dict[str, str] = {}
         self._remembered: dict[str, tuple[tuple[int, int, int, int], str]] = {}
         self._fresh = False
@@ -113,15 +105,9 @@ class WorkingTree(Walked):
             links[known:] = sorted(links[known:])
 
     def _folder(
-        self,
-        folder: str,
-        real: str,
-        repository: str | None,
-        parents: tuple[str, ...],
-        stack: list[tuple[str, str, str | None]],
-        links: list[tuple[str, str, tuple[str, ...]]],
-        found: list[TreeEntry],
-    ) -> None:
+        self, folder: str, real: str, repository: str | None, parents: tuple[str, ...],
+        stack: list[tuple[str, str, str | None]], links: list[tuple[str, str, tuple[str, ...]]], found: list[TreeEntry],
+    ) -> None:  # fmt: skip
         """Lists one folder: files go to found, folders onto the stack, links to folders into links."""
         try:
             with os.scandir(os.path.join(self.root, folder)) as scan:
@@ -134,7 +120,7 @@ class WorkingTree(Walked):
             marker = min(IGNORE_MARKERS & names)
             self.skipped.append(PathProblem(folder or ".", f"holds {marker}"))
             return
-        self._count(folder, len(items))
+        self._count(folder, len(items), folder or ".")
         if ".git" in names:
             repository = real
             self._repositories[folder] = real
@@ -178,17 +164,6 @@ class WorkingTree(Walked):
                 self.problems.append(PathProblem(path, "neither a file nor a folder"))
         if ".gitmodules" in names:
             self._submodules(folder)
-
-    def _count(self, folder: str, items: int) -> None:
-        """Takes what a folder holds from what the tree may hold; names the folder where that is used up."""
-        number = limits().entries
-        if items > self._left:
-            self.problems.append(PathProblem(folder or ".", too_many("files and folders", number)))
-        self._left -= items
-        self._characters_left -= items * len(folder)
-        if self._characters_left < 0 < self._left:
-            self.problems.append(PathProblem(folder or ".", too_long(number)))
-            self._left = 0
 
     def _refused(self, real: str) -> str:
         """Why what has this real path is not read, or an empty string."""

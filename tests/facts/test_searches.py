@@ -1,8 +1,8 @@
 """What is looked for in files beyond their facts: the places of words, uses that rows describe, what C++ declares."""
 
 import pytest
-from rosimpact.impact.facts import cpp
 from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.facts.cpp import lexical as cpp
 from rosimpact.impact.facts.kinds import decode, encode, search
 from rosimpact.impact.facts.searches import WordUse
 from rosimpact.impact.facts.usage import Pattern, Rows, UsageTable

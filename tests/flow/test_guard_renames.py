@@ -1,8 +1,9 @@
 """Renamed names, as two texts and what is proposed."""
 
 import pytest
+from one_way import compare
 from rosimpact.impact.logic.guard_renames import propose_renames
-from rosimpact.impact.logic.guards import NameReading, compare
+from rosimpact.impact.logic.guards import NameReading
 from rosimpact.impact.model.flow.graph import GuardAt
 
 CPP = """

@@ -10,7 +10,6 @@ from rosimpact.impact.model.flow.names import (
     ros1_name,
     ros1_remapped,
     ros2_name,
-    ros2_node,
     ros2_remapped,
     ros2_rule,
 )
@@ -125,19 +124,6 @@ def test_remapping_of_ros2(name, rules, kind, expected):
     assert ros2_remapped(name, "n", "/r", parsed, kind) == expected
 
 
-@pytest.mark.parametrize(
-    ("rules", "expected"),
-    [
-        ([], ("n", "/r")),
-        (["__ns:=/x"], ("n", "/x")),
-        (["__node:=m"], ("m", "/r")),
-        (["__name:=m", "__node:=k"], ("m", "/r")),
-        (["other:__node:=m"], ("n", "/r")),
-        (["__node:=m", "m:__ns:=/x"], ("m", "/x")),
-    ],
-)
-def test_node_of_ros2(rules, expected):
-    assert ros2_node("n", "/r", [rule for rule in map(ros2_rule, rules) if rule is not None]) == expected
 
 
 def test_small_ones():

@@ -4,7 +4,7 @@ import pytest
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.facts.cpp import Include
+from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable

@@ -5,7 +5,7 @@ import pytest
 import zstandard
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.cpp import Include
+from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.python.surface import extract as module

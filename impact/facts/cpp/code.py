@@ -11,121 +11,35 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 
-from tree_sitter import Node, Parser
+from tree_sitter import Node
 
 from ..condition import Condition
 from .flow_clean import cleaned, cleaned_further
-from .flow_grammar import (
-    ARGUMENTS,
-    BRACES,
-    CALL,
-    CAST,
-    COMPOUND,
-    CONDITION,
-    DECLARATION,
-    DEPENDENT,
-    ERROR,
-    FIELD,
-    FIELD_IDENTIFIER,
-    FUNCTION_DECLARATOR,
-    IDENTIFIER,
-    INIT_DECLARATOR,
-    LAMBDA,
-    LANGUAGE,
-    LISTS,
-    OPTIONAL_PARAMETER,
-    PARAMETER,
-    PARENTHESIZED,
-    POINTER,
-    POINTER_DECLARATOR,
-    QUALIFIED,
-    RAW_STRING,
-    REFERENCE,
-    STRING,
-    SUBSCRIPT,
-    TEMPLATE_FUNCTION,
-    TEMPLATE_METHOD,
-    TEMPLATE_TYPE,
-    THIS,
-    VARIADIC_PARAMETER,
-    kind,
-    listed_in,
-)
+from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
 from .lexical import Scan, beginning_lines, scan, standing, text_of
-from .names import without_templates
+from .names import joined, without_templates
 from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
 
-_PARSER = Parser(LANGUAGE)
-_TYPE_IDENTIFIER = kind("type_identifier")
-_NAMESPACE_IDENTIFIER = kind("namespace_identifier")
-_LEAVES = frozenset((IDENTIFIER, FIELD_IDENTIFIER, _TYPE_IDENTIFIER, _NAMESPACE_IDENTIFIER))
-_TEMPLATES = frozenset((TEMPLATE_FUNCTION, TEMPLATE_METHOD, TEMPLATE_TYPE))
-_CLASSES = frozenset((kind("class_specifier"), kind("struct_specifier"), kind("union_specifier")))
-_ENUM = kind("enum_specifier")
-_NAMESPACE = kind("namespace_definition")
-_FUNCTION = kind("function_definition")
-_FIELD_DECLARATION = kind("field_declaration")
-_TEMPLATE = kind("template_declaration")
-_ALIAS = kind("alias_declaration")
-_TYPEDEF = kind("type_definition")
-_USING = kind("using_declaration")
-_SPACE_ALIAS = kind("namespace_alias_definition")
-_LINKAGE = kind("linkage_specification")
-_DECLARATIONS = kind("declaration_list")
-_UNIT = kind("translation_unit")
-_PREPROCESSOR = frozenset(
-    kind(name) for name in ("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
-)
-_DEFINES = frozenset((kind("preproc_def"), kind("preproc_function_def")))
-_BASES = kind("base_class_clause")
-_ACCESS = kind("access_specifier")
-_FRIEND = kind("friend_declaration")
-_STORAGE = kind("storage_class_specifier")
-_TRAIT_NODES = frozenset((kind("virtual_specifier"), kind("type_qualifier"), kind("virtual", False), _STORAGE))
-_TRAILING = kind("trailing_return_type")
-_INITIALIZER = kind("field_initializer")
-_INITIALIZERS = kind("field_initializer_list")
-_NEW = kind("new_expression")
-_LITERAL = kind("compound_literal_expression")
-_EACH = kind("for_range_loop")
-_CATCH = kind("catch_clause")
-_CASE = kind("case_statement")
-_BINDING = kind("structured_binding_declarator")
-_ASSIGNMENT = kind("assignment_expression")
-_DESCRIPTOR = kind("type_descriptor")
-_TEMPLATE_ARGUMENTS = kind("template_argument_list")
-_COMMENT = kind("comment")
-_NUMBER = kind("number_literal")
-_BOOLEANS = frozenset((kind("true"), kind("false")))
-_NULL = kind("null")
-_STRINGS = frozenset((STRING, RAW_STRING, kind("concatenated_string")))
-_BINARY = kind("binary_expression")
-_UNARY = kind("unary_expression")
-_CONDITIONAL = kind("conditional_expression")
-_PACK = kind("parameter_pack_expansion")
-_PARAMETERS = frozenset((PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER))
-_TYPE_PARAMETERS = frozenset(
-    kind(name)
-    for name in (
-        "type_parameter_declaration", "variadic_type_parameter_declaration", "optional_type_parameter_declaration",
-        "template_template_parameter_declaration",
-    )
+_LEAVES = kinds("identifier", "field_identifier", "type_identifier", "namespace_identifier")
+_TEMPLATES = kinds("template_function", "template_method", "template_type")
+_CLASSES = kinds("class_specifier", "struct_specifier", "union_specifier")
+_PREPROCESSOR = kinds("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
+_DEFINES = kinds("preproc_def", "preproc_function_def")
+_TRAIT_NODES = kinds("virtual_specifier", "type_qualifier", "storage_class_specifier") | {kind("virtual", False)}
+_BOOLEANS = kinds("true", "false")
+_STRINGS = kinds("string_literal", "raw_string_literal", "concatenated_string")
+_TYPE_PARAMETERS = kinds(
+    "type_parameter_declaration", "variadic_type_parameter_declaration", "optional_type_parameter_declaration",
+    "template_template_parameter_declaration",
 )  # fmt: skip
-_BLOCKS = frozenset((COMPOUND, _CASE, _UNIT, _DECLARATIONS))
-_STATEMENTS_WITH_HEAD = frozenset(kind(name) for name in ("if_statement", "while_statement", "switch_statement"))
-_FOR = kind("for_statement")
-_NAMES = frozenset((IDENTIFIER, FIELD_IDENTIFIER, _TYPE_IDENTIFIER, QUALIFIED, kind("destructor_name"),
-                    kind("operator_name"), kind("operator_cast"), TEMPLATE_FUNCTION))  # fmt: skip
-_WRAPPED = frozenset(
-    kind(name) for name in ("parenthesized_declarator", "array_declarator", "attributed_declarator",
-                            "variadic_declarator")
-)  # fmt: skip
-_MARKS = {POINTER_DECLARATOR: "*", REFERENCE: "&"}
-_TYPES = frozenset(
-    kind(name)
-    for name in ("type_identifier", "primitive_type", "sized_type_specifier", "qualified_identifier", "template_type",
-                 "placeholder_type_specifier", "decltype", "dependent_type")
-)  # fmt: skip
+_BLOCKS = kinds("compound_statement", "case_statement", "translation_unit", "declaration_list")
+_BODIES = kinds("compound_statement", "lambda_expression", "field_initializer_list")
+_NAMED = kinds("alias_declaration", "namespace_definition", "namespace_alias_definition")
+_TYPED = kinds("type_definition", "declaration", "field_declaration", "for_range_loop")
+_STATEMENTS_WITH_HEAD = kinds("if_statement", "while_statement", "switch_statement")
+_NAMES = NAMES - kinds("template_method", "namespace_identifier")
+_WRAPPED = kinds("parenthesized_declarator", "array_declarator", "attributed_declarator", "variadic_declarator")
+_MARKS = {KIND.pointer_declarator: "*", KIND.reference_declarator: "&"}
 _TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
 # What these find in comments too does no harm: it is one more name that nobody asks for.
 _LIKE_USING = re.compile(r"using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;")
@@ -151,17 +65,15 @@ class CppCode:
         self._mentioned: dict[str, bool] = {}
         self._blocks: dict[int, list[tuple[int, str, Node, str]]] = {}
 
-    # -- syntax --------------------------------------------------------------------------------------------------------
-
     @cached_property
     def _parsed(self) -> tuple[str, str, Node]:
         """The text, what was parsed, and its tree."""
         source = cleaned(self._data)
-        root = _PARSER.parse(source.source).root_node
+        root = PARSER.parse(source.source).root_node
         if root.has_error:
             further = cleaned_further(self._data, source)
             if further.source != source.source:
-                again = _PARSER.parse(further.source).root_node
+                again = PARSER.parse(further.source).root_node
                 if _errors(again) < _errors(root):
                     source, root = further, again
         return source.text, source.source.decode(), root
@@ -196,14 +108,10 @@ class CppCode:
         """The preprocessor conditions around an offset; None in a directive."""
         return self._scanned.under(offset)
 
-    # -- declarations --------------------------------------------------------------------------------------------------
-
     @cached_property
     def file(self) -> FileDeclarations:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
-
-    # -- uses ----------------------------------------------------------------------------------------------------------
 
     def mentions(self, word: str) -> bool:
         """Whether a word may stand in the file, in comments too."""
@@ -299,7 +207,7 @@ class CppCode:
             if wanted is None or wanted(word, at):
                 path = self._path(at)
                 node = path[-2] if len(path) > 1 else path[-1]
-                if path[-1].start_byte == at and node.kind_id == _ASSIGNMENT:
+                if path[-1].start_byte == at and node.kind_id == KIND.assignment_expression:
                     left = node.child_by_field_name("left")
                     if left is not None:
                         yield CppUse(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
@@ -319,16 +227,16 @@ class CppCode:
                     break
                 if node.end_byte == at + len(word):
                     template = self._template(parent)
-            elif number == QUALIFIED:
+            elif number == KIND.qualified_identifier:
                 scope = parent.child_by_field_name("scope")
                 if scope is not None and scope.start_byte <= at < scope.end_byte:
                     last = False
-            elif number != DEPENDENT:
+            elif number != KIND.dependent_name:
                 break
             level -= 1
             node = path[level]
             first = node
-        if path[-1].kind_id == _NAMESPACE_IDENTIFIER and last:
+        if path[-1].kind_id == KIND.namespace_identifier and last:
             return None
         written = without_templates(self._text[first.start_byte : at + len(word)]).removeprefix("::")
         parent = path[level - 1] if level else node
@@ -337,7 +245,7 @@ class CppCode:
         form = "scoped" if "::" in written else "bare"
         if not last:
             return CppUse(word, at, form, written, self._place(path), template=template, last=False)
-        if number == FIELD:
+        if number == KIND.field_expression:
             object_ = parent.child_by_field_name("argument")
             if object_ is None or object_ == node:
                 return self._named(word, at, form, written, template, None, False, path, outer)
@@ -348,10 +256,10 @@ class CppCode:
                 return None
             return CppUse(word, at, "member", written, self._place(path), self._expression(object_, outer), arrow,
                        call, template=template)  # fmt: skip
-        if number == _INITIALIZER:
+        if number == KIND.field_initializer:
             call = self._arguments(parent.named_children[-1], outer)
             return CppUse(word, at, "initializer", written, self._place(path), call=call, template=template)
-        if number == CALL:
+        if number == KIND.call_expression:
             return self._named(word, at, form, written, template, self._called(path, level), False, path, outer)
         if self._is_declared(node, parent, path, level):
             return None
@@ -365,7 +273,7 @@ class CppCode:
     def _called(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
         """The arguments where the node at a level is what a call calls."""
         call = path[level - 1] if level else None
-        if call is None or call.kind_id != CALL or call.child_by_field_name("function") != path[level]:
+        if call is None or call.kind_id != KIND.call_expression or call.child_by_field_name("function") != path[level]:
             return None
         return self._arguments(call.child_by_field_name("arguments"), path[:level])
 
@@ -377,16 +285,16 @@ class CppCode:
     def _is_declared(self, node: Node, parent: Node, path: Sequence[Node], level: int) -> bool:
         """Whether a name stands where it is declared."""
         number = parent.kind_id
-        if number in _CLASSES or number == _ENUM or number in (_ALIAS, _NAMESPACE, _SPACE_ALIAS):
+        if number in DECLARED_TYPES or number in _NAMED:
             return parent.child_by_field_name("name") == node
         if number in _DEFINES or parent.type == "enumerator" or number in _TYPE_PARAMETERS:
             return parent.child_by_field_name("name") == node or number in _TYPE_PARAMETERS
-        if number == _TYPEDEF or number in _PARAMETERS or number in (DECLARATION, _FIELD_DECLARATION, _EACH):
+        if number in PARAMETERS or number in _TYPED:
             return parent.child_by_field_name("type") != node and node in parent.children_by_field_name("declarator")
-        if number == INIT_DECLARATOR:
+        if number == KIND.init_declarator:
             return parent.child_by_field_name("declarator") == node
         return (
-            number in (FUNCTION_DECLARATOR, _FRIEND)
+            number in (KIND.function_declarator, KIND.friend_declaration)
             or number in _MARKS
             or (number in _WRAPPED and parent.type != "parenthesized_declarator")
             or parent.type in ("destructor_name", "structured_binding_declarator", "labeled_statement",
@@ -396,30 +304,30 @@ class CppCode:
     def _made(self, node: Node, parent: Node, path: Sequence[Node], level: int):
         """Whether a name is the type of what is made, and with which arguments."""
         number = parent.kind_id
-        if number == _NEW and parent.child_by_field_name("type") == node:
+        if number == KIND.new_expression and parent.child_by_field_name("type") == node:
             arguments = parent.child_by_field_name("arguments")
             return True, self._arguments(arguments, path[:level]) if arguments is not None else ()
-        if number == _LITERAL and parent.child_by_field_name("type") == node:
+        if number == KIND.compound_literal_expression and parent.child_by_field_name("type") == node:
             return True, None  # braces may be an aggregate's
-        if number == _DESCRIPTOR and level > 3 and path[level - 2].kind_id == _TEMPLATE_ARGUMENTS:
+        if number == KIND.type_descriptor and level > 3 and path[level - 2].kind_id == KIND.template_argument_list:
             function = path[level - 3]
             name = function.child_by_field_name("name")
             if name is not None and self._of(name) in _MAKERS and path[level - 2].named_children[0] == parent:
                 up = level - 3
-                while up and path[up - 1].kind_id == QUALIFIED:
+                while up and path[up - 1].kind_id == KIND.qualified_identifier:
                     up -= 1
-                if up and path[up - 1].kind_id == CALL:
+                if up and path[up - 1].kind_id == KIND.call_expression:
                     return True, self._called(path, up)
-        if number in (DECLARATION, _FIELD_DECLARATION) and parent.child_by_field_name("type") == node:
+        if number in (KIND.declaration, KIND.field_declaration) and parent.child_by_field_name("type") == node:
             for declarator in parent.children_by_field_name("declarator"):
-                if declarator.kind_id == INIT_DECLARATOR:
+                if declarator.kind_id == KIND.init_declarator:
                     value = declarator.child_by_field_name("value")
                     inner = declarator.child_by_field_name("declarator")
                     if value is None or inner is None:
                         continue
-                    if value.kind_id == ARGUMENTS and inner.kind_id == IDENTIFIER:
+                    if value.kind_id == KIND.argument_list and inner.kind_id == KIND.identifier:
                         return True, self._arguments(value, path[:level])
-                elif declarator.kind_id == FUNCTION_DECLARATOR and self._in_function(path):
+                elif declarator.kind_id == KIND.function_declarator and any(node.kind_id in _BODIES for node in path):
                     return True, self._as_arguments(declarator, path[:level])
         return False, None
 
@@ -427,20 +335,15 @@ class CppCode:
         """The arguments of `A a(b, c)`, which look like the parameters of a function."""
         listed = declarator.child_by_field_name("parameters")
         inner = declarator.child_by_field_name("declarator")
-        if listed is None or inner is None or inner.kind_id != IDENTIFIER:
+        if listed is None or inner is None or inner.kind_id != KIND.identifier:
             return None
         found = []
         for each in listed_in(listed):
-            type_ = each.child_by_field_name("type") if each.kind_id == PARAMETER else None
+            type_ = each.child_by_field_name("type") if each.kind_id == KIND.parameter_declaration else None
             if type_ is None or each.child_by_field_name("declarator") is not None or each.named_child_count != 1:
                 return None
             found.append(self._expression(type_, path))
         return tuple(found) or None  # `A a();` declares a function
-
-    # -- places --------------------------------------------------------------------------------------------------------
-
-    def _in_function(self, path: Sequence[Node]) -> bool:
-        return any(node.kind_id in (COMPOUND, LAMBDA, _INITIALIZERS) for node in path)
 
     def _place(self, path: Sequence[Node]) -> CodePlace:
         scope: list[str] = []
@@ -449,31 +352,29 @@ class CppCode:
         used: list[str] = []
         for node in path:
             number = node.kind_id
-            if number == _NAMESPACE or number in _CLASSES:
+            if number == KIND.namespace_definition or number in _CLASSES:
                 name = node.child_by_field_name("name")
                 if name is not None:
                     scope.append(without_templates(self._of(name)))
                 if number in _CLASSES:
                     owner = "::".join(scope)
-            elif number == _FUNCTION:
+            elif number == KIND.function_definition:
                 name, _, declarator, _ = self._declarator(node.child_by_field_name("declarator"))
                 if name is not None and declarator is not None and self._of(name) in _FIXTURES:
                     listed = declarator.child_by_field_name("parameters")
                     owner = self._of(listed.named_children[0]) if listed is not None and listed.named_children else ""
-                elif name is not None and name.kind_id == QUALIFIED:
+                elif name is not None and name.kind_id == KIND.qualified_identifier:
                     written = without_templates(self._of(name)).rpartition("::")[0]
                     owner = written.removeprefix("::")
-            elif number in (COMPOUND, LAMBDA, _INITIALIZERS):
+            elif number in _BODIES:
                 function = True
-            if number == COMPOUND:
+            if number == KIND.compound_statement:
                 for at, name, _, how in self._block(node):
                     if how == "opened":
                         opened.append(name)
                     elif how == "used" and at < path[-1].start_byte:
                         used.append(name)
         return CodePlace("::".join(scope), owner, function, tuple(opened), tuple(used))
-
-    # -- what names mean inside functions ------------------------------------------------------------------------------
 
     def _local(self, name: str, at: int, path: Sequence[Node], depth: int = 0) -> Local | None:
         """What a name means at an offset, as declared in the blocks around it."""
@@ -490,7 +391,7 @@ class CppCode:
                         found = offset, node, how
                 if found is not None:
                     return self._declared_locally(name, *found, path[: level + 1], depth)
-            elif number in _CLASSES and any(node.kind_id == _FUNCTION for node in path[level:]):
+            elif number in _CLASSES and any(node.kind_id == KIND.function_definition for node in path[level:]):
                 members = path[level].child_by_field_name("body")
                 if members is not None and self._is_member(members, name):
                     return None  # a member hides what is outside of the class
@@ -515,19 +416,19 @@ class CppCode:
             value = self._value(node.child_by_field_name("right"), path, depth)
             declarator = node.child_by_field_name("declarator")
             name_node, marks, *_ = self._declarator(declarator)
-            if name_node is not None and name_node.kind_id == _BINDING:
+            if name_node is not None and name_node.kind_id == KIND.structured_binding_declarator:
                 return Local("binding", "auto", value, offset)
             return Local("each", type_ + marks, value, offset)
         for declarator in node.children_by_field_name("declarator"):
             name_node, marks, parameters, array = self._declarator(declarator)
             if name_node is None:
                 continue
-            if name_node.kind_id == _BINDING:
+            if name_node.kind_id == KIND.structured_binding_declarator:
                 return Local("binding", "auto", None, offset)
             if name_node.start_byte != offset:
                 continue
             value = None
-            if declarator.kind_id == INIT_DECLARATOR:
+            if declarator.kind_id == KIND.init_declarator:
                 given = declarator.child_by_field_name("value")
                 if given is not None and "auto" in type_:
                     value = self._value(given, path, depth)
@@ -542,7 +443,7 @@ class CppCode:
     def _as_arguments_likely(self, declarator: Node) -> bool:
         listed = declarator.child_by_field_name("parameters")
         return listed is not None and all(
-            each.kind_id == PARAMETER and each.named_child_count == 1 for each in listed_in(listed)
+            each.kind_id == KIND.parameter_declaration and each.named_child_count == 1 for each in listed_in(listed)
         ) and bool(listed_in(listed))
 
     def _value(self, node: Node | None, path: Sequence[Node], depth: int) -> Expr | None:
@@ -564,7 +465,7 @@ class CppCode:
         number = node.kind_id
         if number in _BLOCKS:
             yield from self._declares_among(node.named_children)
-        elif number == LAMBDA:
+        elif number == KIND.lambda_expression:
             declarator = node.child_by_field_name("declarator")
             if declarator is not None:
                 yield from self._parameters_of(declarator)
@@ -573,63 +474,51 @@ class CppCode:
                 left = each.child_by_field_name("left")
                 if left is not None:
                     yield left.start_byte, self._of(left), each, "captured"
-        elif number == _FUNCTION:
+        elif number == KIND.function_definition:
             declarator = node.child_by_field_name("declarator")
-            while declarator is not None and declarator.kind_id != FUNCTION_DECLARATOR:
+            while declarator is not None and declarator.kind_id != KIND.function_declarator:
                 declarator = declarator.child_by_field_name("declarator") or (
                     declarator.named_children[-1] if declarator.kind_id in _MARKS else None
                 )
             if declarator is not None:
                 yield from self._parameters_of(declarator)
-        elif number == _CATCH:
+        elif number == KIND.catch_clause:
             yield from self._parameters_of(node)
-        elif number == _EACH:
-            name, *_ = self._declarator(node.child_by_field_name("declarator"))
-            if name is not None and name.kind_id == _BINDING:
-                for each in name.named_children:
-                    yield each.start_byte, self._of(each), node, "each"
-            elif name is not None:
-                yield name.start_byte, self._of(name), node, "each"
-        elif number == _FOR:
+        elif number == KIND.for_range_loop:
+            yield from self._named_by(node.child_by_field_name("declarator"), node, "each")
+        elif number == KIND.for_statement:
             first = node.child_by_field_name("initializer")
             if first is not None:
                 yield from self._declares_among([first])
         elif number in _STATEMENTS_WITH_HEAD:
             condition = node.child_by_field_name("condition")
-            if condition is not None and condition.kind_id == CONDITION:
+            if condition is not None and condition.kind_id == KIND.condition_clause:
                 for each in condition.named_children:
                     yield from self._declares_among(each.named_children if each.type == "init_statement" else [each])
-        elif number == _TEMPLATE:
+        elif number == KIND.template_declaration:
             for name, at in self._template_parameters(node):
                 yield at, name, node, "template"
 
     def _declares_among(self, children: Sequence[Node]) -> Iterator[tuple[int, str, Node, str]]:
         for child in children:
             number = child.kind_id
-            if number == DECLARATION:
+            if number == KIND.declaration:
                 for declarator in child.children_by_field_name("declarator"):
-                    name, *_ = self._declarator(declarator)
-                    if name is None:
-                        continue
-                    if name.kind_id == _BINDING:
-                        for each in name.named_children:
-                            yield each.start_byte, self._of(each), child, "variable"
-                    else:
-                        yield name.start_byte, self._of(name), child, "variable"
+                    yield from self._named_by(declarator, child, "variable")
                 type_ = child.child_by_field_name("type")
                 if type_ is not None and type_.kind_id in _CLASSES:
                     yield from self._declares_among([type_])
             elif number in _PREPROCESSOR:
                 yield from self._declares_among(child.named_children)
-            elif number in (_ALIAS, _TYPEDEF):
+            elif number in (KIND.alias_declaration, KIND.type_definition):
                 name = child.child_by_field_name("name") or child.child_by_field_name("declarator")
                 if name is not None:
                     yield child.start_byte, self._of(name), child, "alias"
-            elif number in _CLASSES or number == _ENUM:
+            elif number in DECLARED_TYPES:
                 name = child.child_by_field_name("name")
-                if name is not None and child.parent is not None and child.parent.kind_id == COMPOUND:
+                if name is not None and child.parent is not None and child.parent.kind_id == KIND.compound_statement:
                     yield name.start_byte, self._of(name), child, "type"
-            elif number == _USING:
+            elif number == KIND.using_declaration:
                 text = self._of(child)
                 full = text.removeprefix("using").strip(" ;")
                 if full.startswith("namespace "):
@@ -641,29 +530,33 @@ class CppCode:
     def _parameters_of(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
         listed = node.child_by_field_name("parameters")
         for each in listed.named_children if listed is not None else ():
-            if each.kind_id in _PARAMETERS:
-                name, *_ = self._declarator(each.child_by_field_name("declarator"))
-                if name is not None:
-                    yield name.start_byte, self._of(name), each, "parameter"
+            if each.kind_id in PARAMETERS:
+                yield from self._named_by(each.child_by_field_name("declarator"), each, "parameter")
+
+    def _named_by(self, declarator: Node | None, node: Node, how: str) -> Iterator[tuple[int, str, Node, str]]:
+        """The names that a declarator has, of a binding each of its own."""
+        name, *_ = self._declarator(declarator)
+        if name is not None:
+            for each in name.named_children if name.kind_id == KIND.structured_binding_declarator else [name]:
+                yield each.start_byte, self._of(each), node, how
 
     def _template_parameters(self, node: Node) -> Iterator[tuple[str, int]]:
         listed = node.child_by_field_name("parameters")
         for each in listed.named_children if listed is not None else ():
             if each.kind_id in _TYPE_PARAMETERS:
-                names = [inner for inner in each.named_children if inner.kind_id == _TYPE_IDENTIFIER]
+                names = [inner for inner in each.named_children if inner.kind_id == KIND.type_identifier]
                 if names:
                     yield self._of(names[0]), names[0].start_byte
-            elif each.kind_id in _PARAMETERS:
-                name, *_ = self._declarator(each.child_by_field_name("declarator"))
-                if name is not None:
-                    yield self._of(name), name.start_byte
+            elif each.kind_id in PARAMETERS:
+                for at, name, *_ in self._named_by(each.child_by_field_name("declarator"), each, ""):
+                    yield name, at
 
     def _declarator(self, node: Node | None) -> tuple[Node | None, str, Node | None, bool]:
         """Name, marks, parameters and whether it is an array, of a declarator."""
         marks, parameters, array = "", None, False
         while node is not None:
             number = node.kind_id
-            if number in _NAMES or number == _BINDING:
+            if number in _NAMES or number == KIND.structured_binding_declarator:
                 return node, marks, parameters, array
             if number in _MARKS:
                 marks += _MARKS[number]
@@ -671,10 +564,10 @@ class CppCode:
                 node = inner if inner is not None else next(
                     (c for c in reversed(node.named_children) if c.type != "type_qualifier"), None
                 )  # fmt: skip
-            elif number == FUNCTION_DECLARATOR:
+            elif number == KIND.function_declarator:
                 parameters = node
                 node = node.child_by_field_name("declarator")
-            elif number == INIT_DECLARATOR:
+            elif number == KIND.init_declarator:
                 node = node.child_by_field_name("declarator")
             elif number in _WRAPPED:
                 array = array or node.type == "array_declarator"
@@ -689,7 +582,7 @@ class CppCode:
         type_ = node.child_by_field_name("type")
         if type_ is None:
             return ""
-        if type_.kind_id in _CLASSES or type_.kind_id == _ENUM:
+        if type_.kind_id in DECLARED_TYPES:
             name = type_.child_by_field_name("name")
             return self._of(name) if name is not None else ""
         constant = any(
@@ -701,18 +594,16 @@ class CppCode:
         listed = node.child_by_field_name("arguments")
         return tuple(self._of(each) for each in listed_in(listed)) if listed is not None else ()
 
-    # -- expressions ---------------------------------------------------------------------------------------------------
-
     def _expression(self, node: Node, path: Sequence[Node], depth: int = 0) -> Expr:
         number, at = node.kind_id, node.start_byte
         if depth > _DEEPEST:
             return Expr("other", "", at)
-        if number in (IDENTIFIER, _TYPE_IDENTIFIER):
+        if number in (KIND.identifier, KIND.type_identifier):
             name = self._of(node)
             return Expr("name", name, at, local=self._local(name, at, path, depth))
-        if number in (QUALIFIED, TEMPLATE_FUNCTION, TEMPLATE_TYPE):
+        if number in (KIND.qualified_identifier, KIND.template_function, KIND.template_type):
             inner, template = node, None
-            while inner is not None and inner.kind_id == QUALIFIED:
+            while inner is not None and inner.kind_id == KIND.qualified_identifier:
                 inner = inner.child_by_field_name("name")
             if inner is not None and inner.kind_id in _TEMPLATES:
                 template = self._template(inner)
@@ -720,11 +611,11 @@ class CppCode:
             else:
                 written = self._text[at : node.end_byte]
             return Expr("name", without_templates(written).removeprefix("::"), at, template=template)
-        if number == FIELD:
+        if number == KIND.field_expression:
             object_, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
             if object_ is None or field is None:
                 return Expr("other", "", at)
-            if field.kind_id == DEPENDENT and field.named_child_count:
+            if field.kind_id == KIND.dependent_name and field.named_child_count:
                 field = field.named_children[-1]
             template = None
             if field.kind_id in _TEMPLATES:
@@ -734,67 +625,71 @@ class CppCode:
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
             return Expr("member", self._of(field), field.start_byte, (self._expression(object_, path, depth + 1),),
                         arrow, template)  # fmt: skip
-        if number == CALL:
+        if number == KIND.call_expression:
             function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
             if function is None:
                 return Expr("other", "", at)
             given = listed_in(arguments) if arguments is not None else []
             parts = (function, *given)
             return Expr("call", "", at, tuple(self._expression(each, path, depth + 1) for each in parts))
-        if number == PARENTHESIZED and node.named_child_count:
+        if number == KIND.parenthesized_expression and node.named_child_count:
             return self._expression(listed_in(node)[0], path, depth + 1) if listed_in(node) else Expr("other", "", at)
-        if number == POINTER:
+        if number == KIND.pointer_expression:
             inner = node.child_by_field_name("argument")
             sign = self._text[at]
             if inner is not None:
                 return Expr("unary", sign, at, (self._expression(inner, path, depth + 1),))
-        if number == SUBSCRIPT:
+        if number == KIND.subscript_expression:
             inner = node.child_by_field_name("argument")
             if inner is not None:
                 return Expr("index", "", at, (self._expression(inner, path, depth + 1),))
-        if number == THIS:
+        if number == KIND.this:
             return Expr("this", "this", at)
         if number in _STRINGS:
             return Expr("literal", "text", at)
-        if number == _NUMBER:
+        if number == KIND.number_literal:
             text = self._of(node)
             floating = text[:2] not in ("0x", "0X") and any(c in text for c in ".eE")
             return Expr("literal", "float" if floating else "integer", at)
         if number in _BOOLEANS:
             return Expr("literal", "bool", at)
-        if number == _NULL:
+        if number == KIND.null:
             return Expr("literal", "null", at)
-        if number == LAMBDA:
+        if number == KIND.lambda_expression:
             return Expr("lambda", "", at)
-        if number in (_NEW, _LITERAL, CAST):
+        if number in (KIND.new_expression, KIND.compound_literal_expression, KIND.cast_expression):
             type_ = node.child_by_field_name("type")
             given = node.child_by_field_name("arguments") or node.child_by_field_name("value")
             values = [] if given is None else listed_in(given) if given.kind_id in LISTS else [given]
-            how = "new" if number == _NEW else "cast" if number == CAST else "braces"
+            how = "new" if number == KIND.new_expression else "cast" if number == KIND.cast_expression else "braces"
             return Expr(how, self._of(type_) if type_ is not None else "", at,
                         tuple(self._expression(each, path, depth + 1) for each in values))  # fmt: skip
-        if number == BRACES:
+        if number == KIND.initializer_list:
             return Expr("braces", "", at, tuple(self._expression(each, path, depth + 1) for each in listed_in(node)))
-        if number in (_BINARY, _UNARY):
+        if number in (KIND.binary_expression, KIND.unary_expression):
             operator = node.child_by_field_name("operator")
             operands = [
                 each
                 for name in ("left", "right", "argument")
                 if (each := node.child_by_field_name(name)) is not None
             ]
-            return Expr("binary" if number == _BINARY else "unary", self._of(operator) if operator is not None else "",
-                        at, tuple(self._expression(each, path, depth + 1) for each in operands))  # fmt: skip
-        if number == _CONDITIONAL:
+            how = "binary" if number == KIND.binary_expression else "unary"
+            sign = self._of(operator) if operator is not None else ""
+            return Expr(how, sign, at, tuple(self._expression(each, path, depth + 1) for each in operands))
+        if number == KIND.conditional_expression:
             both = (node.child_by_field_name("consequence"), node.child_by_field_name("alternative"))
             parts = tuple(self._expression(each, path, depth + 1) for each in both if each is not None)
             return Expr("conditional", "", at, parts)
-        return Expr("pack" if number == _PACK else "other", "", at)
+        return Expr("pack" if number == KIND.parameter_pack_expansion else "other", "", at)
 
 
 # Macros of gtest that open the body of a method of a class that is derived from what they are given first.
 _FIXTURES = frozenset(("TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P"))
 _MAKERS = frozenset(("make_shared", "make_unique"))
-_SCOPED = frozenset((LAMBDA, _FUNCTION, _CATCH, _EACH, _FOR, _TEMPLATE)) | _STATEMENTS_WITH_HEAD
+_SCOPED = _STATEMENTS_WITH_HEAD | kinds(
+    "lambda_expression", "function_definition", "catch_clause", "for_range_loop", "for_statement",
+    "template_declaration",
+)  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
@@ -816,7 +711,7 @@ def _errors(root: Node) -> int:
     found, waiting = 0, [root] if root.has_error else []
     while waiting:
         node = waiting.pop()
-        if node.kind_id == ERROR:
+        if node.kind_id == KIND.ERROR:
             found += 1
         elif node.has_error:
             waiting += node.children
@@ -848,33 +743,34 @@ class _Declarations:
     def _among(self, children: Sequence[Node], scope: str, members: dict | None, template: tuple[str, ...]) -> None:
         for node in children:
             number = node.kind_id
-            if number == _NAMESPACE:
+            if number == KIND.namespace_definition:
                 name = node.child_by_field_name("name")
-                inner = _joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
+                inner = joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
                 self.added[inner] = None
                 body = node.child_by_field_name("body")
                 if body is not None:
                     self._among(body.named_children, inner, None, ())
-            elif number in (DECLARATION, _FIELD_DECLARATION, _FUNCTION):
+            elif number in (KIND.declaration, KIND.field_declaration, KIND.function_definition):
                 self._declaration(node, scope, members, template)
             elif number in _CLASSES:
                 self._class(node, scope, members, template)
-            elif number == _ENUM:
+            elif number == KIND.enum_specifier:
                 self._enum(node, scope, members)
-            elif number == _TEMPLATE:
+            elif number == KIND.template_declaration:
                 inner = tuple(name for name, _ in self.code._template_parameters(node))
                 self._among(node.named_children[1:], scope, members, inner or ("",))
             elif number in _PREPROCESSOR:
                 self._among(node.named_children, scope, members, template)
-            elif number == _LINKAGE:
+            elif number == KIND.linkage_specification:
                 body = node.child_by_field_name("body")
                 if body is not None:
-                    self._among(body.named_children if body.kind_id == _DECLARATIONS else [body], scope, members, ())
-            elif number in (_ALIAS, _TYPEDEF):
+                    several = body.kind_id == KIND.declaration_list
+                    self._among(body.named_children if several else [body], scope, members, ())
+            elif number in (KIND.alias_declaration, KIND.type_definition):
                 self._alias(node, scope, members, template)
-            elif number == _USING:
+            elif number == KIND.using_declaration:
                 self._using(node, scope)
-            elif number == _SPACE_ALIAS:
+            elif number == KIND.namespace_alias_definition:
                 name = node.child_by_field_name("name")
                 meant = self.code._of(node).partition("=")[2].strip(" ;")
                 if name is not None and meant:
@@ -883,7 +779,7 @@ class _Declarations:
                 name = node.child_by_field_name("name")
                 if name is not None:
                     self.macros.append(self.code._of(name))
-            elif number in (ERROR, _DECLARATIONS):
+            elif number in (KIND.ERROR, KIND.declaration_list):
                 self._among(node.named_children, scope, members, template)
 
     def _add(self, members: dict[str, list[Declaration]] | None, one: Declaration) -> None:
@@ -899,7 +795,7 @@ class _Declarations:
         if type_node is not None:
             if type_node.kind_id in _CLASSES:
                 self._class(type_node, scope, members, template if not declarators else ())
-            elif type_node.kind_id == _ENUM:
+            elif type_node.kind_id == KIND.enum_specifier:
                 self._enum(type_node, scope, members)
         type_ = code._type(node)
         traits = {
@@ -909,21 +805,21 @@ class _Declarations:
             traits.add("template")
         for declarator in declarators:
             name, marks, function, array = code._declarator(declarator)
-            if name is None or name.kind_id == _BINDING:
+            if name is None or name.kind_id == KIND.structured_binding_declarator:
                 continue
             written = without_templates(code._of(name))
             outer, _, last = written.removeprefix("::").rpartition("::")
-            around = _joined(scope, outer) if outer else scope
+            around = joined(scope, outer) if outer else scope
             if function is not None:
                 inner = set(traits)
                 result = type_ + marks
                 for child in function.children:
                     if child.kind_id in _TRAIT_NODES and code._of(child) in _TRAITS:
                         inner.add(code._of(child))
-                    elif child.kind_id == _TRAILING and child.named_child_count:
+                    elif child.kind_id == KIND.trailing_return_type and child.named_child_count:
                         result = code._of(child.named_children[-1])
                 behind = code._text[function.end_byte : node.end_byte][:40]
-                if node.kind_id == _FIELD_DECLARATION and re.match(r"\s*=\s*0\s*;", behind):
+                if node.kind_id == KIND.field_declaration and re.match(r"\s*=\s*0\s*;", behind):
                     inner.add("pure")
                 if re.match(r"[^{;]*=\s*delete\b", behind):
                     inner.add("deleted")
@@ -932,7 +828,7 @@ class _Declarations:
                                    frozenset(inner), template))  # fmt: skip
             else:
                 value = None
-                if "auto" in type_ and declarator.kind_id == INIT_DECLARATOR:
+                if "auto" in type_ and declarator.kind_id == KIND.init_declarator:
                     given = declarator.child_by_field_name("value")
                     value = code._value(given, (), 0)
                 self._add(members if not outer else None,
@@ -945,7 +841,7 @@ class _Declarations:
         listed = function.child_by_field_name("parameters")
         found = []
         for each in listed_in(listed) if listed is not None else ():
-            if each.kind_id not in _PARAMETERS:
+            if each.kind_id not in PARAMETERS:
                 found.append(WrittenParameter("..." if each.type == "variadic_parameter" else code._of(each)))
                 continue
             declarator = each.child_by_field_name("declarator")
@@ -954,7 +850,7 @@ class _Declarations:
             # The type is all but the name and the default.
             end = default.start_byte if default is not None else each.end_byte
             text = code._text[each.start_byte : end].rstrip(" \t\n=")
-            if name is not None and name.kind_id == IDENTIFIER:
+            if name is not None and name.kind_id == KIND.identifier:
                 start = name.start_byte - each.start_byte
                 text = text[:start] + text[start + name.end_byte - name.start_byte :]
             found.append(WrittenParameter(" ".join(text.split()), code._of(name) if name is not None else "",
@@ -970,21 +866,21 @@ class _Declarations:
                 self._among(body.named_children, scope, members, ())
             return
         written = code._of(name)
-        full = _joined(scope, without_templates(written))
+        full = joined(scope, without_templates(written))
         if body is None:
-            if node.parent is None or node.parent.kind_id not in (DECLARATION, _FIELD_DECLARATION) or not (
+            if node.parent is None or node.parent.kind_id not in (KIND.declaration, KIND.field_declaration) or not (
                 node.parent.children_by_field_name("declarator")
             ):
                 self.announced.append(full)
             return
         bases = []
         for child in node.named_children:
-            if child.kind_id == _BASES:
-                bases = [code._of(one) for one in child.named_children if one.kind_id in _TYPES]
+            if child.kind_id == KIND.base_class_clause:
+                bases = [code._of(one) for one in child.named_children if one.kind_id in TYPES]
         inside: dict[str, list[Declaration]] = {}
         place = len(self.classes)
         self._among(body.named_children, full, inside, ())
-        open_ = any(child.kind_id == ERROR or child.is_missing for child in body.children) or any(
+        open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
             each.type.isupper() for those in inside.values() for each in those
         )
         one = CppClass(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
@@ -1000,7 +896,7 @@ class _Declarations:
         full = scope
         if name is not None:
             last = without_templates(code._of(name))
-            full = _joined(scope, last)
+            full = joined(scope, last)
             self._add(members, Declaration("type", last, scope, name.start_byte))
         for each in body.named_children if body is not None else ():
             inner = each.child_by_field_name("name")
@@ -1013,7 +909,7 @@ class _Declarations:
 
     def _alias(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
         code = self.code
-        if node.kind_id == _ALIAS:
+        if node.kind_id == KIND.alias_declaration:
             name, type_ = node.child_by_field_name("name"), node.child_by_field_name("type")
             if name is not None and type_ is not None:
                 self._add(members, Declaration("alias", code._of(name), scope, name.start_byte, code._of(type_),
@@ -1034,7 +930,3 @@ class _Declarations:
             self.opened.append((scope, "".join(full.removeprefix("namespace").split()).removeprefix("::")))
         else:
             self.using.append((scope, without_templates(full.removeprefix("typename")).removeprefix("::")))
-
-
-def _joined(scope: str, name: str) -> str:
-    return f"{scope}::{name}" if scope and name else scope or name

@@ -12,38 +12,17 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from tree_sitter import Node, Parser
+from tree_sitter import Node
 
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
-from . import EXPORTING, beginning_lines, exports_of, scan
 from .flow_clean import Cleaned, cleaned, cleaned_further
-from .flow_grammar import (
-    ARGUMENTS,
-    BRACES,
-    COMPOUND,
-    DECLARATORS,
-    DECLARED_TYPES,
-    EQUALS,
-    ERROR,
-    FUNCTION_DECLARATOR,
-    IDENTIFIER,
-    INIT_DECLARATOR,
-    LANGUAGE,
-    NAMES,
-    PARAMETERS,
-    POINTER_DECLARATOR,
-    REFERENCE,
-    TRAILING_RETURN,
-    TYPES,
-    grammatical,
-    kind,
-    listed_in,
-)
-from .flow_statements import FIELD_INITIALIZERS, PREPROC, CppStatements
+from .flow_grammar import DECLARATORS, DECLARED_TYPES, KIND, NAMES, PARSER, TYPES, grammatical, listed_in, node_readers
+from .flow_statements import CppStatements
 from .flow_values import READ, bare, flat
+from .lexical import EXPORTING, beginning_lines, exports_of, scan
+from .names import joined
 
-PARSER = Parser(LANGUAGE)
 INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 
@@ -96,7 +75,7 @@ def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
     while waiting:
         node = waiting.pop()
         # A semicolon after a macro is often missing, and nothing is lost by it.
-        if node.kind_id == ERROR or (node.is_missing and node.kind_id != SEMICOLON):
+        if node.kind_id == KIND.ERROR or (node.is_missing and node.kind_id != KIND.semicolon):
             found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
         elif node.has_error:
             waiting += node.children
@@ -126,13 +105,11 @@ class _File(CppStatements):
         self.restore(self.outside[owner])
 
     def leave_outside(self) -> None:
-        for _owner, state in self.outside.items():
+        for state in self.outside.values():
             self.restore(state)
             if self.calls:
                 line = min(call.line for call in self.calls)
                 self.close((), line, max(call.line for call in self.calls))
-
-    # Scopes
 
     def scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
         """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty for none."""
@@ -141,7 +118,7 @@ class _File(CppStatements):
             if read is not None:
                 read(self, child, name, owner, conditions)
 
-    def namespace(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_namespace_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         body = node.child_by_field_name("body")
         if body is None:
@@ -152,10 +129,12 @@ class _File(CppStatements):
             self.namespaces.add(inner)
         self.scope(body.children, inner, "", conditions)
 
-    def descend(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_linkage_specification(self, node: Node, name: str, owner: str, conditions) -> None:
         self.scope(node.children, name, owner, conditions)
 
-    def template(self, node: Node, name: str, owner: str, conditions) -> None:
+    scope_declaration_list = scope_template_instantiation = scope_friend_declaration = scope_linkage_specification
+
+    def scope_template_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         before, parameters = self.types, node.child_by_field_name("parameters")
         self.types = tuple(map(self.type_parameter, parameters.named_children)) if parameters is not None else ()
         self.scope(node.children, name, owner, conditions)
@@ -170,7 +149,7 @@ class _File(CppStatements):
         )
         return self.said(named) if named is not None else ""
 
-    def unparsed(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_ERROR(self, node: Node, name: str, owner: str, conditions) -> None:
         """What did not parse: whatever is a whole piece in it is read."""
         for child in node.children:
             read = SCOPED.get(child.kind_id)
@@ -180,7 +159,7 @@ class _File(CppStatements):
                 self.go_outside(owner)
                 self.statement(child, -1)
 
-    def preprocessed(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
         asked, statements, rest = self.branch(node)
         if not rest and not owner and asked.startswith("!(defined(") and guards_file(node, statements):
             self.scope(statements, name, owner, conditions)
@@ -194,26 +173,26 @@ class _File(CppStatements):
             inner = (*conditions, (asked, line)) if asked else conditions
             self.scope(statements, name, owner, inner)
 
-    # Names
+    scope_preproc_ifdef = scope_preproc_if
 
-    def alias(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_alias_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         target = node.child_by_field_name("type")
         if said is not None and target is not None:
             self.aliases.append(Alias(self.said(said), self.said(target), name))
 
-    def typedef(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_type_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         target = self.written_type(children)
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.class_(child, name, owner, conditions)
+                self.scope_class_specifier(child, name, owner, conditions)
         for child in node.children_by_field_name("declarator"):
             said, marks = self.declared(child)
             if said is not None:
                 self.aliases.append(Alias(self.said(said), target + marks, name))
 
-    def using(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_using_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         target = next((child for child in children if child.kind_id in NAMES), None)
         if target is None:
@@ -224,12 +203,12 @@ class _File(CppStatements):
         else:
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
-    def namespace_alias(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = grammatical(node)
         if len(children) >= 4:
             self.aliases.append(Alias(self.said(children[1]), bare(self.said(children[3])), name))
 
-    def define(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_preproc_def(self, node: Node, name: str, owner: str, conditions) -> None:
         children = node.children
         if len(children) < 3:
             return
@@ -243,9 +222,7 @@ class _File(CppStatements):
         if value is not None:
             self.constants.append(DataMember(self.said(said), "", self.line(node), value))
 
-    # Variables and members
-
-    def declared_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         """A declaration outside of functions: variables; what declares functions tells only their names."""
         self.go_outside(owner)
         base = self.guarded(conditions)
@@ -253,7 +230,7 @@ class _File(CppStatements):
         type_ = ""
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.class_(child, name, owner, conditions)
+                self.scope_class_specifier(child, name, owner, conditions)
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
@@ -264,30 +241,33 @@ class _File(CppStatements):
             self.go_outside(owner)
             self.variable(node, child, index, type_, name, owner, base)
 
+    scope_field_declaration = scope_declaration
+
     def variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
         said, marks = self.declared(child)
         if said is None or self.declares_function(child):
             if said is not None and owner:
                 self.methods.append(bare(self.said(said)))
             return
-        if child.kind_id == MACRO_LIKE and node.children[-1].is_missing:
+        if child.kind_id == KIND.parenthesized_declarator and node.children[-1].is_missing:
             return
         variable = bare(self.said(said))
         target = f"this.{variable}" if owner else joined(name, variable)
         value: FlowExpr | None = None
         children = node.children
         given: Node | None = None
-        if child.kind_id == INIT_DECLARATOR:
+        if child.kind_id == KIND.init_declarator:
             given = child.children[-1]
         elif index + 1 < len(children):
             beside = children[index + 1]
-            if beside.kind_id == EQUALS and index + 2 < len(children):
+            if beside.kind_id == KIND.equals_sign and index + 2 < len(children):
                 given = children[index + 2]
-            elif beside.kind_id == BRACES:
+            elif beside.kind_id == KIND.initializer_list:
                 given = beside
         if given is not None:
-            direct = given.kind_id == ARGUMENTS or (
-                given.kind_id == BRACES and given.prev_sibling is not None and given.prev_sibling.kind_id != EQUALS
+            before = given.prev_sibling
+            direct = given.kind_id == KIND.argument_list or (
+                given.kind_id == KIND.initializer_list and before is not None and before.kind_id != KIND.equals_sign
             )
             if direct:
                 inner = listed_in(given)
@@ -304,11 +284,11 @@ class _File(CppStatements):
         """Whether a declarator is that of a function, rather than of a pointer to one."""
         for _ in range(64):
             number = node.kind_id
-            if number == FUNCTION_DECLARATOR:
+            if number == KIND.function_declarator:
                 return node.children[0].kind_id in NAMES
-            if number == OPERATOR_CAST:
+            if number == KIND.operator_cast:
                 return True
-            if number not in (POINTER_DECLARATOR, REFERENCE, INIT_DECLARATOR):
+            if number not in (KIND.pointer_declarator, KIND.reference_declarator, KIND.init_declarator):
                 return False
             inner = next((child for child in node.children if child.kind_id in DECLARATORS), None)
             if inner is None:
@@ -323,21 +303,19 @@ class _File(CppStatements):
             guard = self.guard("cpp", text, line, guard)
         return guard
 
-    # Classes
-
     members: list[DataMember]
     methods: list[str]
 
-    def class_(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
-        if body is None or node.kind_id == ENUM:
+        if body is None or node.kind_id == KIND.enum_specifier:
             return
         said = node.child_by_field_name("name")
         inner = joined(name, bare(self.said(said))) if said is not None else name
         bases: list[str] = []
         for child in node.children:
-            if child.kind_id == BASES:
+            if child.kind_id == KIND.base_class_clause:
                 bases = [self.said(part) for part in child.children if part.kind_id in TYPES]
         kept = getattr(self, "members", None), getattr(self, "methods", None)
         self.members, self.methods = [], []
@@ -349,20 +327,14 @@ class _File(CppStatements):
         members, methods = self.members, self.methods
         if kept[0] is not None and kept[1] is not None:
             self.members, self.methods = kept[0], kept[1]
-        self.classes.append(
-            FlowClass(
-                inner,
-                tuple(bases),
-                tuple(members),
-                tuple(dict.fromkeys(methods)),
-                self.line(node),
-                self.line_of_end(node),
-                types,
-            )
-        )
+        lines = self.line(node), self.line_of_end(node)
+        found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
+        self.classes.append(found)
+
+    scope_struct_specifier = scope_union_specifier = scope_enum_specifier = scope_class_specifier
 
     def local_type(self, node: Node) -> None:
-        self.class_(node, self.name or self.owner, "", ())
+        self.scope_class_specifier(node, self.name or self.owner, "", ())
 
     def local_name(self, node: Node) -> None:
         SCOPED[node.kind_id](self, node, self.name, "", ())
@@ -370,9 +342,7 @@ class _File(CppStatements):
     def line_of_end(self, node: Node) -> int:
         return bisect_right(self.starts, node.end_byte)
 
-    # Functions
-
-    def function(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         """A function with its body."""
         declarator: Node | None = None
         body: Node | None = None
@@ -382,43 +352,43 @@ class _File(CppStatements):
         children = node.children
         for index, child in enumerate(children):
             number = child.kind_id
-            if number in (COMPOUND, TRY):
+            if number in (KIND.compound_statement, KIND.try_statement):
                 body = child
-            elif number == FIELD_INITIALIZERS:
+            elif number == KIND.field_initializer_list:
                 initializers = child
-            elif number == VIRTUAL:
+            elif child.type == "virtual":
                 virtual = True
             elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
                 declarator = child
             elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
-                self.class_(child, name, owner, conditions)
-        while declarator is not None and declarator.kind_id in (POINTER_DECLARATOR, REFERENCE):
+                self.scope_class_specifier(child, name, owner, conditions)
+        while declarator is not None and declarator.kind_id in (KIND.pointer_declarator, KIND.reference_declarator):
             mark = declarator.children[0]
             marks += self.text[mark.start_byte : mark.end_byte]
             declarator = next((part for part in declarator.children if part.kind_id in DECLARATORS), None)
-        if declarator is None or (declarator.kind_id == IDENTIFIER and children[0].kind_id in DECLARED_TYPES):
+        if declarator is None or (declarator.kind_id == KIND.identifier and children[0].kind_id in DECLARED_TYPES):
             # `class MACRO Name { ... }` is taken for a function that gives a `class MACRO`.
             self.misread = True
             self.go_outside(owner)
             for child in children:
-                if child.kind_id == COMPOUND:
+                if child.kind_id == KIND.compound_statement:
                     self.statement(child, -1)
             return
         returns = ""
         listed: Node | None = None
-        if declarator.kind_id == FUNCTION_DECLARATOR:
+        if declarator.kind_id == KIND.function_declarator:
             said = bare(self.said(declarator.children[0]))
             for child in declarator.children:
                 number = child.kind_id
-                if number == PARAMETERS and listed is None:
+                if number == KIND.parameter_list and listed is None:
                     listed = child
-                elif number == TRAILING_RETURN:
+                elif number == KIND.trailing_return_type:
                     returns = self.said(child).removeprefix("->").strip()
-                elif number == VIRTUAL_SPECIFIER:
+                elif number == KIND.virtual_specifier:
                     virtual = True
         else:
             said = self.said(declarator)
-            if declarator.kind_id == OPERATOR_CAST or "operator" in said:
+            if declarator.kind_id == KIND.operator_cast or "operator" in said:
                 said = said.partition("(")[0].strip()
             else:
                 said = bare(said)
@@ -455,7 +425,7 @@ class _File(CppStatements):
     def initializers(self, node: Node, guard: int) -> None:
         """The list of initialisers of a constructor: assignments to members, and to base classes by their names."""
         for child in node.children:
-            if child.kind_id != FIELD_INITIALIZER:
+            if child.kind_id != KIND.field_initializer:
                 continue
             parts = grammatical(child)
             target = f"this.{bare(self.said(parts[0]))}"
@@ -467,14 +437,10 @@ class _File(CppStatements):
                 value = FlowExpr("make", "", self.arguments(given, guard, target) if inner else ())
             self.assignments.append(Assignment(target, value, self.line(child), guard))
 
-    def statement_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+    def scope_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
         """Macros and other statements outside of functions."""
         self.go_outside(owner)
         self.statement(node, self.guarded(conditions))
-
-
-def joined(scope: str, name: str) -> str:
-    return f"{scope}::{name}" if scope and name else scope or name
 
 
 def _is_number(text: str) -> bool:
@@ -487,39 +453,10 @@ def _is_number(text: str) -> bool:
 
 def guards_file(node: Node, statements: list[Node]) -> bool:
     """Whether an #ifndef is the guard of a header: it defines at once what it asks for."""
-    if not statements or statements[0].kind_id != DEFINE:
+    if not statements or statements[0].kind_id != KIND.preproc_def:
         return False
     asked, defined = node.children[1], statements[0].children[1]
     return asked.text == defined.text
 
 
-SEMICOLON = kind(";", False)
-DEFINE = kind("preproc_def")
-ENUM = kind("enum_specifier")
-BASES = kind("base_class_clause")
-TRY = kind("try_statement")
-VIRTUAL = kind("virtual", False)
-VIRTUAL_SPECIFIER = kind("virtual_specifier")
-OPERATOR_CAST = kind("operator_cast")
-MACRO_LIKE = kind("parenthesized_declarator")
-FIELD_INITIALIZER = kind("field_initializer")
-SCOPED = {
-    kind("namespace_definition"): _File.namespace,
-    kind("linkage_specification"): _File.descend,
-    kind("declaration_list"): _File.descend,
-    kind("template_declaration"): _File.template,
-    kind("template_instantiation"): _File.descend,
-    kind("friend_declaration"): _File.descend,
-    kind("function_definition"): _File.function,
-    kind("declaration"): _File.declared_outside,
-    kind("field_declaration"): _File.declared_outside,
-    kind("alias_declaration"): _File.alias,
-    kind("type_definition"): _File.typedef,
-    kind("using_declaration"): _File.using,
-    kind("namespace_alias_definition"): _File.namespace_alias,
-    DEFINE: _File.define,
-    kind("expression_statement"): _File.statement_outside,
-    ERROR: _File.unparsed,
-    **{number: _File.preprocessed for number in PREPROC},
-    **{number: _File.class_ for number in DECLARED_TYPES},
-}  # fmt: skip
+SCOPED = node_readers(_File, "scope_")

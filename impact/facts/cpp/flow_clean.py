@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
-from . import line_starts, scan, text_of
+from .lexical import Directive, blanked, blanks, conditional_blocks, line_starts, scan, text_of
 
 
 class Region(NamedTuple):
@@ -72,7 +73,7 @@ _VISIBILITY_ENDS = ("_PUBLIC", "_EXPORT", "_API", "_LOCAL")
 _VISIBILITY = re.compile(r"_(?:PUBLIC|EXPORTS?|LOCAL|API)(?:_TYPE)?\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
 _LAST_WORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _CLASS_MACRO = re.compile(
-    r"(?:class|struct)\s+(?P<macro>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
+    r"(?:class|struct)\s+(?P<gone>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
 )
 # Words that stand where the grammar knows none; gone, what is around them is plain C++.
 _BARE = (
@@ -84,7 +85,7 @@ _BARE = (
 _RARE_VISIBILITY = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:DECL|VISIBILITY|IMPORT|HIDDEN)\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
 _BARE_WORD = re.compile(r"\b(?:" + "|".join(_BARE) + r")\b(?!\s*\()")
 _FORMATS = re.compile(r"\bPRI[diouxX](?:LEAST|FAST)?(?:8|16|32|64|MAX|PTR)\b")
-_SLOTS = re.compile(r"\b((?:public|protected|private)\s+)(slots|Q_SLOTS)(?=\s*:)")
+_SLOTS = re.compile(r"\b(?:public|protected|private)\s+(?P<gone>slots|Q_SLOTS)(?=\s*:)")
 _SIGNALS = re.compile(r"^([ \t]*)(signals|Q_SIGNALS)([ \t]*:)(?!:)", re.MULTILINE)
 _EACH_NAMES = ("_FOREACH", "foreach")
 _EACH = re.compile(r"\b(?:BOOST_FOREACH|BOOST_REVERSE_FOREACH|Q_FOREACH|foreach)(?=\s*\()")
@@ -103,7 +104,7 @@ def cleaned(data: bytes) -> Cleaned:
     if not source.isascii() or "\0" in source:
         source = _NOT_ASCII.sub(_stand_in, source)
     if source.count("]]") >= _MOST_ATTRIBUTES:
-        source = _ATTRIBUTES.sub(_blank_lines, source)
+        source = blanked(source, [match.span() for match in _ATTRIBUTES.finditer(source)])
     if any(end in source for end in _VISIBILITY_ENDS):
         source = _without_visibility(source)
     if any(name in source for name in _EACH_NAMES):
@@ -123,38 +124,18 @@ def cleaned_further(data: bytes, before: Cleaned) -> Cleaned:
 
 def _without_visibility(source: str) -> str:
     """`class FOO_PUBLIC A` as `class            A`. Searched from the end of the word, which is the rarer part."""
-    pieces: list[str] = []
-    position = 0
+    gone: list[tuple[int, int]] = []
     for match in _VISIBILITY.finditer(source):
         line = source.rfind("\n", 0, match.start()) + 1
-        word = _LAST_WORD.search(source, max(line, position), match.start())
-        if word is None or source[line : word.start()].lstrip()[:1] == "#":
-            continue
-        pieces += [source[position : word.start()], " " * (match.end() - word.start())]
-        position = match.end()
-    return "".join(pieces) + source[position:]
+        word = _LAST_WORD.search(source, max(line, gone[-1][1] if gone else 0), match.start())
+        if word is not None and source[line : word.start()].lstrip()[:1] != "#":
+            gone.append((word.start(), match.end()))
+    return blanked(source, gone)
 
 
 def _stand_in(match: re.Match[str]) -> str:
     # A letter, so that words in any script stay words.
     return " " if match[0] == "\0" else "x"
-
-
-def _blank(match: re.Match[str]) -> str:
-    return " " * len(match[0])
-
-
-def _blank_lines(match: re.Match[str]) -> str:
-    return _NOT_NEWLINE.sub(_blank, match[0])
-
-
-def _blank_macro(match: re.Match[str]) -> str:
-    start = match.start()
-    return match[0][: match.start("macro") - start] + " " * (match.end() - match.start("macro"))
-
-
-def _without_slots(match: re.Match[str]) -> str:
-    return match[1] + " " * len(match[2])
 
 
 def _as_public(match: re.Match[str]) -> str:
@@ -203,26 +184,19 @@ def _each(source: str) -> str:
     return "".join(pieces) + source[position:]
 
 
-def _blank_group(match: re.Match[str]) -> str:
-    """What a pattern calls `gone` as blanks."""
+def _blank_group(match: re.Match[str], sign: str = " ") -> str:
+    """What a pattern calls `gone` as blanks, or as a row of another sign."""
     start, (first, last) = match.start(), match.span("gone")
-    return match[0][: first - start] + " " * (last - first) + match[0][last - start :]
+    return match[0][: first - start] + sign * (last - first) + match[0][last - start :]
 
 
-def _word_group(match: re.Match[str]) -> str:
-    """What a pattern calls `gone` as one word."""
-    start, (first, last) = match.start(), match.span("gone")
-    return match[0][: first - start] + "x" * (last - first) + match[0][last - start :]
+_word_group = partial(_blank_group, sign="x")
 
 
 def _rounded(match: re.Match[str]) -> str:
     """`= {a, b}` as `= (a, b)`, and `= {}` as `= 0 `."""
     inner = match["inner"]
     return f"={match['blanks']}({inner})" if inner.strip() else f"={match['blanks']}0{' ' * (len(inner) + 1)}"
-
-
-def _ended(match: re.Match[str]) -> str:
-    return match["macro"] + ";"
 
 
 # What the grammar does not know, and what it does that means the same: (words to look for, pattern, stand-in).
@@ -252,12 +226,12 @@ _FURTHER = (
     (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
     (("ach",), _EACH_LIKE, _blank_group),
     (("EACH",), _EACH_MACRO, _blank_group),
-    ((")",), _STATEMENT_MACRO, _ended),
-    (("class ", "struct "), _CLASS_MACRO, _blank_macro),
+    ((")",), _STATEMENT_MACRO, r"\g<macro>;"),
+    (("class ", "struct "), _CLASS_MACRO, _blank_group),
     (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),
     (_BARE, _BARE_WORD, _unless_directive),
-    (("PRI",), _FORMATS, _blank),
-    (("slots", "Q_SLOTS"), _SLOTS, _without_slots),
+    (("PRI",), _FORMATS, blanks),
+    (("slots", "Q_SLOTS"), _SLOTS, _blank_group),
     (("signals", "Q_SIGNALS"), _SIGNALS, _as_public),
 )
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b((?:[^\n]*\\\n)*[^\n]*)", re.MULTILINE)
@@ -265,7 +239,6 @@ _BRACES = re.compile(r"[{}()]")
 _STARTS_INSIDE = re.compile(r"\s*(?:else\b|&&|\|\||<<|[,.?)+*/=]|:(?!:)|->|-)")
 _ENDS_INSIDE = re.compile(r"(?:\belse|&&|\|\||<<|[,(=?+*/]|-)\s*\Z")
 _HEADED = re.compile(r"\s*(?:\}\s*else\s+)?(?:if|while|for|else\s+if)\b[^;{}]*\)\s*\Z")
-_NOT_NEWLINE = re.compile(r"[^\n]+")
 
 
 def _flattened(
@@ -278,22 +251,10 @@ def _flattened(
     visible = scan(data).visible
     if len(visible) != len(text):
         return source, (), ()
-    opened: list[list[tuple[int, int, str, str]]] = []
     blank: list[tuple[int, int]] = []
     regions: list[Region] = []
     hidden: list[tuple[int, int]] = []
-    for match in _DIRECTIVE.finditer(visible):
-        word = match[1]
-        condition = " ".join(text[match.start(2) : match.end(2)].replace("\\\n", " ").split("//")[0].split())
-        if word.startswith("if"):
-            opened.append([(match.start(), match.end(), word, condition)])
-            continue
-        if not opened:
-            continue
-        opened[-1].append((match.start(), match.end(), word, condition))
-        if word != "endif":
-            continue
-        directives = opened.pop()
+    for directives in conditional_blocks(_directives(visible, text)):
         if not _cuts(visible, directives):
             continue
         first_start, first_end, first_word, condition = directives[0]
@@ -308,17 +269,16 @@ def _flattened(
         blank.append((kept_end, directives[-1][1]))
         if len(directives) > 2:
             hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
-    pieces: list[str] = []
-    position = 0
-    for start, end in sorted(blank):
-        if end > position:
-            pieces += [source[position:start], _NOT_NEWLINE.sub(_blank, source[max(start, position) : end])]
-            position = end
-    source = "".join(pieces) + source[position:]
-    return source, tuple(sorted(regions)), tuple(hidden)
+    return blanked(source, sorted(blank)), tuple(sorted(regions)), tuple(hidden)
 
 
-def _cuts(visible: str, directives: list[tuple[int, int, str, str]]) -> bool:
+def _directives(visible: str, text: str) -> Iterator[Directive]:
+    for match in _DIRECTIVE.finditer(visible):
+        condition = text[match.start(2) : match.end(2)].replace("\\\n", " ").split("//")[0]
+        yield match.start(), match.end(), match[1], " ".join(condition.split())
+
+
+def _cuts(visible: str, directives: list[Directive]) -> bool:
     """Whether an #if block cuts through a statement, so that its branches are none by themselves."""
     before = visible[max(0, directives[0][0] - 2000) : directives[0][0]]
     while True:  # directives before it are no code

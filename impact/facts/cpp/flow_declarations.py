@@ -8,34 +8,15 @@ from tree_sitter import Node
 
 from ..flow import Assignment, FlowCall, FlowExpr, FlowFunction, FlowParameter
 from .flow_grammar import (
-    ABSTRACT_FUNCTION,
-    ARGUMENTS,
-    BINDING,
-    BRACES,
-    CAPTURE_INITIALIZER,
-    CAPTURES,
-    COMPOUND,
-    DECLARATION,
     DECLARATORS,
     DECLARED_TYPES,
-    EQUALS,
-    FUNCTION_DECLARATOR,
-    IDENTIFIER,
-    INIT_DECLARATOR,
-    LAMBDA,
+    KIND,
     NAMES,
-    OPTIONAL_PARAMETER,
-    PARAMETER,
     PARAMETERS,
-    POINTER_DECLARATOR,
-    REFERENCE,
-    RVALUE,
-    TRAILING_RETURN,
-    TYPE_QUALIFIER,
     TYPES,
-    VARIADIC_PARAMETER,
     grammatical,
     listed_in,
+    node_readers,
 )
 from .flow_values import READ, VALUES, FunctionReader, Position, bare, flat
 
@@ -49,7 +30,7 @@ class Declarations(FunctionReader):
         typed = False
         for child in children:
             number = child.kind_id
-            if number == TYPE_QUALIFIER:
+            if number == KIND.type_qualifier:
                 pieces.append(self.text[child.start_byte : child.end_byte])
             elif number in DECLARED_TYPES:
                 name = child.child_by_field_name("name")
@@ -67,9 +48,9 @@ class Declarations(FunctionReader):
         marks = ""
         for _ in range(64):
             number = node.kind_id
-            if number in NAMES or number == BINDING:
+            if number in NAMES or number == KIND.structured_binding_declarator:
                 return node, marks
-            if number in (POINTER_DECLARATOR, REFERENCE):
+            if number in (KIND.pointer_declarator, KIND.reference_declarator):
                 mark = node.children[0]
                 marks += self.text[mark.start_byte : mark.end_byte]
             for child in node.children:
@@ -80,7 +61,7 @@ class Declarations(FunctionReader):
                 return None, marks
         return None, marks
 
-    def declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """Local variables."""
         children = node.children
         kind_ = ""
@@ -88,37 +69,32 @@ class Declarations(FunctionReader):
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
-            if number == INIT_DECLARATOR:
+            if number == KIND.init_declarator:
                 if not typed:
                     kind_, typed = self.written_type(children), True
                 value = self.initialised(child, guard, kind_)
-            elif number in DECLARATORS and (number not in NAMES or typed or self.is_declarator(node, index)):
+            elif number in DECLARATORS and (
+                number not in NAMES or typed or node.field_name_for_child(index) == "declarator"
+            ):
                 if not typed:
                     kind_, typed = self.written_type(children), True
-                if number == FUNCTION_DECLARATOR:
+                if number == KIND.function_declarator:
                     self.constructed(child, guard, kind_)
                     continue
-                if number == REFERENCE and self.called_after(child, guard, kind_):
+                if number == KIND.reference_declarator and self.called_after(child, guard, kind_):
                     continue
                 given = children[index + 1] if index + 1 < len(children) else None
-                if given is not None and given.kind_id == EQUALS and index + 2 < len(children):
+                if given is not None and given.kind_id == KIND.equals_sign and index + 2 < len(children):
                     # `if (auto x = f())` has no init_declarator.
                     value = self.kept(child, children[index + 2], guard, kind_)
                     break
                 name, marks = self.declared(child)
                 if name is None:
                     continue
-                variable = self.text[name.start_byte : name.end_byte]
-                self.known.add(variable)
-                self.assignments.append(
-                    Assignment(variable, FlowExpr("make", kind_ + marks), self.line(name), guard, kind_ + marks)
-                )
+                self.assign(name, FlowExpr("make", kind_ + marks), guard, kind_ + marks)
             elif number in DECLARED_TYPES:
                 self.local_type(child)
         return value
-
-    def is_declarator(self, node: Node, index: int) -> bool:
-        return node.field_name_for_child(index) == "declarator"
 
     def local_type(self, node: Node) -> None:
         """A class inside a function; who reads files says what is done with it."""
@@ -128,7 +104,7 @@ class Declarations(FunctionReader):
 
     def initialised(self, node: Node, guard: int, kind_: str) -> FlowExpr:
         children = node.children
-        if len(children) == 3 and children[1].kind_id == EQUALS:
+        if len(children) == 3 and children[1].kind_id == KIND.equals_sign:
             return self.kept(children[0], children[2], guard, kind_)
         children = grammatical(node)
         if len(children) == 3:
@@ -137,30 +113,34 @@ class Declarations(FunctionReader):
             return self.anything(node, guard, READ, "")
         name, marks = self.declared(children[0])
         given = children[1]
-        if name is None or given.kind_id not in (ARGUMENTS, BRACES):
+        if name is None or given.kind_id not in (KIND.argument_list, KIND.initializer_list):
             return self.anything(node, guard, READ, "")
-        variable = self.text[name.start_byte : name.end_byte]
         if kind_.endswith("auto") or marks:
             inner = listed_in(given)
             if len(inner) == 1:
                 return self.kept(children[0], inner[0], guard, kind_)
         value = FlowExpr("make", kind_, self.arguments(given, guard, bare(kind_)))
+        return self.assign(name, value, guard, kind_ + marks)
+
+    def assign(self, name: Node, value: FlowExpr, guard: int, type_: str) -> FlowExpr:
+        """Notes a variable that is declared here, with the value that it begins with."""
+        variable = self.text[name.start_byte : name.end_byte]
         self.known.add(variable)
-        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
+        self.assignments.append(Assignment(variable, value, self.line(name), guard, type_))
         return value
 
     def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
         """`T x = given`."""
-        if declarator.kind_id == IDENTIFIER:
+        if declarator.kind_id == KIND.identifier:
             name, marks = declarator, ""
         else:
             name, marks = self.declared(declarator)
             if name is None:
                 return self.value(given, guard, READ)
-        if name.kind_id == BINDING:
+        if name.kind_id == KIND.structured_binding_declarator:
             value = self.value(given, guard, READ)
             line = self.line(name)
-            variables = [child for child in name.children if child.kind_id == IDENTIFIER]
+            variables = [child for child in name.children if child.kind_id == KIND.identifier]
             for index, child in enumerate(variables):
                 variable = self.text[child.start_byte : child.end_byte]
                 self.known.add(variable)
@@ -168,16 +148,13 @@ class Declarations(FunctionReader):
                 self.assignments.append(Assignment(variable, part, line, guard, kind_ + marks))
             return value
         variable = self.text[name.start_byte : name.end_byte]
-        value = self.value(given, guard, READ, variable)
-        self.known.add(variable)
-        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
-        return value
+        return self.assign(name, self.value(given, guard, READ, variable), guard, kind_ + marks)
 
     def constructed(self, node: Node, guard: int, kind_: str) -> None:
         """`T x(a, f());` in a function, which the grammar takes for a function's declaration."""
         children = grammatical(node)
         name, marks = self.declared(children[0])
-        listed = next((child for child in children if child.kind_id == PARAMETERS), None)
+        listed = next((child for child in children if child.kind_id == KIND.parameter_list), None)
         if name is None or listed is None:
             return
         types = listed_in(listed)
@@ -190,19 +167,15 @@ class Declarations(FunctionReader):
             if part is None:
                 return
             parts.append(part)
-        variable = self.text[name.start_byte : name.end_byte]
-        self.known.add(variable)
-        self.assignments.append(
-            Assignment(variable, FlowExpr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
-        )
+        self.assign(name, FlowExpr("make", kind_, tuple(parts)), guard, kind_ + marks)
 
     def called_after(self, node: Node, guard: int, asked: str) -> bool:
         """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
         children = grammatical(node)
-        if len(children) != 2 or children[0].kind_id != RVALUE or children[1].kind_id != FUNCTION_DECLARATOR:
+        if len(children) != 2 or children[0].type != "&&" or children[1].kind_id != KIND.function_declarator:
             return False
         name, listed = children[1].children[0], children[1].children[-1]
-        if listed.kind_id != PARAMETERS:
+        if listed.kind_id != KIND.parameter_list:
             return False
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
@@ -219,15 +192,15 @@ class Declarations(FunctionReader):
     def taken_for_parameter(self, node: Node, guard: int, position: Position) -> FlowExpr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""
         children = grammatical(node)
-        if node.kind_id != PARAMETER or not children or children[0].kind_id not in TYPES:
+        if node.kind_id != KIND.parameter_declaration or not children or children[0].kind_id not in TYPES:
             return None
         name = bare(self.text[children[0].start_byte : children[0].end_byte])
         if len(children) == 1:
             if name in self.known:
                 self.touch(name, node, guard, position)
             return FlowExpr("name", name)
-        if len(children) == 2 and children[1].kind_id == ABSTRACT_FUNCTION:
-            listed = next((child for child in children[1].children if child.kind_id == PARAMETERS), None)
+        if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
+            listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
             parts: list[FlowExpr] = []
             for child in listed_in(listed) if listed is not None else ():
                 part = self.taken_for_parameter(child, guard, ("pass", name, len(parts)))
@@ -239,8 +212,6 @@ class Declarations(FunctionReader):
             return FlowExpr("call", name, tuple(parts))
         return None
 
-    # Functions
-
     def parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
         """The parameters of a function; their names are known from here on."""
         result: list[FlowParameter] = []
@@ -248,7 +219,7 @@ class Declarations(FunctionReader):
             return ()
         for child in listed.children:
             number = child.kind_id
-            if number not in (PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER):
+            if number not in PARAMETERS:
                 continue
             children = child.children
             default: FlowExpr | None = None
@@ -257,7 +228,7 @@ class Declarations(FunctionReader):
             typed = False
             for index, part in enumerate(children):
                 kind_ = part.kind_id
-                if kind_ == EQUALS:
+                if kind_ == KIND.equals_sign:
                     end = part.start_byte
                     if index + 1 < len(children):
                         default = self.value(children[index + 1], guard)
@@ -279,7 +250,7 @@ class Declarations(FunctionReader):
             result.append(FlowParameter(said, flat(written), default))
         return tuple(result)
 
-    def lambda_(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_lambda_expression(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
         line, column = self.place(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
@@ -291,19 +262,19 @@ class Declarations(FunctionReader):
         returns = ""
         for child in node.children:
             number = child.kind_id
-            if number == CAPTURES:
+            if number == KIND.lambda_capture_specifier:
                 for capture in child.children:
-                    if capture.kind_id == CAPTURE_INITIALIZER:
+                    if capture.kind_id == KIND.lambda_capture_initializer:
                         parts = grammatical(capture)
                         said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
                         inits.append((said, self.value(parts[-1], guard, READ)))
-            elif number == COMPOUND:
+            elif number == KIND.compound_statement:
                 body = child
-            elif number == ABSTRACT_FUNCTION:
+            elif number == KIND.abstract_function_declarator:
                 for part in child.children:
-                    if part.kind_id == PARAMETERS:
+                    if part.kind_id == KIND.parameter_list:
                         listed = part
-                    elif part.kind_id == TRAILING_RETURN:
+                    elif part.kind_id == KIND.trailing_return_type:
                         returns = self.said(part).removeprefix("->").strip()
         state = self.state()
         self.begin(set(self.known))
@@ -324,25 +295,14 @@ class Declarations(FunctionReader):
         """Notes the function it is in."""
         self.functions.append(
             FlowFunction(
-                self.name,
-                self.owner,
-                parameters,
-                line,
-                end,
-                tuple(self.guards),
-                tuple(self.calls),
-                tuple(self.assignments),
-                tuple(self.accesses),
-                (),
-                returns,
-                virtual,
-                types=self.types,
+                self.name, self.owner, parameters, line, end, tuple(self.guards), tuple(self.calls),
+                tuple(self.assignments), tuple(self.accesses), (), returns, virtual, types=self.types,
             )
-        )
+        )  # fmt: skip
 
     def run(self, body: Node, guard: int = -1) -> None:
         """The statements of a function; given by who knows statements."""
         raise NotImplementedError
 
 
-VALUES.update({LAMBDA: Declarations.lambda_, DECLARATION: Declarations.declaration})
+VALUES.update(node_readers(Declarations, "value_"))

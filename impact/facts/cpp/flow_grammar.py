@@ -3,89 +3,61 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
 
 import tree_sitter_cpp
-from tree_sitter import Language, Node
+from tree_sitter import Language, Node, Parser
+
+from ....edges.dispatch import methods_of
 
 LANGUAGE = Language(tree_sitter_cpp.language())
+PARSER = Parser(LANGUAGE)
 
 
 def kind(name: str, named: bool = True) -> int:
     """The number of a kind of node."""
-    number = LANGUAGE.id_for_node_kind(name, named)
+    number = LANGUAGE.id_for_node_kind(name, named) or (65535 if name == "ERROR" else None)
     if number is None:
         raise ValueError(f"the grammar knows no {name}")
     return number
 
 
-IDENTIFIER = kind("identifier")
-FIELD_IDENTIFIER = kind("field_identifier")
-QUALIFIED = kind("qualified_identifier")
-FIELD = kind("field_expression")
-TEMPLATE_FUNCTION = kind("template_function")
-TEMPLATE_METHOD = kind("template_method")
-TEMPLATE_TYPE = kind("template_type")
-DEPENDENT = kind("dependent_name")
-THIS = kind("this")
-CALL = kind("call_expression")
-ARGUMENTS = kind("argument_list")
-BRACES = kind("initializer_list")
-COMMENT = kind("comment")
-PARENTHESIZED = kind("parenthesized_expression")
-POINTER = kind("pointer_expression")
-SUBSCRIPT = kind("subscript_expression")
-CAST = kind("cast_expression")
-BINARY = kind("binary_expression")
-STRING = kind("string_literal")
-RAW_STRING = kind("raw_string_literal")
-LAMBDA = kind("lambda_expression")
-CONDITION = kind("condition_clause")
-DECLARATION = kind("declaration")
-FUNCTION_DECLARATOR = kind("function_declarator")
-ABSTRACT_FUNCTION = kind("abstract_function_declarator")
-INIT_DECLARATOR = kind("init_declarator")
-REFERENCE = kind("reference_declarator")
-POINTER_DECLARATOR = kind("pointer_declarator")
-BINDING = kind("structured_binding_declarator")
-PARAMETER = kind("parameter_declaration")
-OPTIONAL_PARAMETER = kind("optional_parameter_declaration")
-VARIADIC_PARAMETER = kind("variadic_parameter_declaration")
-PARAMETERS = kind("parameter_list")
-COMPOUND = kind("compound_statement")
-TYPE_QUALIFIER = kind("type_qualifier")
-CAPTURES = kind("lambda_capture_specifier")
-CAPTURE_INITIALIZER = kind("lambda_capture_initializer")
-LISTS = (ARGUMENTS, BRACES)
-ERROR = LANGUAGE.id_for_node_kind("ERROR", True) or 65535
+def kinds(*names: str) -> frozenset[int]:
+    """The numbers of some kinds of nodes."""
+    return frozenset(map(kind, names))
 
-DECLARED_TYPES = frozenset(
-    kind(name) for name in ("class_specifier", "struct_specifier", "union_specifier", "enum_specifier")
-)
-NAMES = frozenset(
-    kind(name)
-    for name in (
-        "identifier", "field_identifier", "qualified_identifier", "destructor_name", "operator_name", "operator_cast",
-        "type_identifier", "template_function", "template_method", "namespace_identifier",
-    )
-)  # fmt: skip
 
-EQUALS = kind("=", False)
-RVALUE = kind("&&", False)
-TRAILING_RETURN = kind("trailing_return_type")
-DECLARATORS = NAMES | frozenset(
-    kind(name)
-    for name in (
-        "function_declarator", "pointer_declarator", "reference_declarator", "array_declarator", "init_declarator",
-        "parenthesized_declarator", "structured_binding_declarator", "variadic_declarator", "attributed_declarator",
-    )
+def node_readers(cls: type, prefix: str) -> dict[int, Callable[..., Any]]:
+    """The methods of a class by the kind of node that stands behind a prefix in their names."""
+    return {kind(name): method for name, method in methods_of(cls, prefix).items()}
+
+
+_NODE_NAMES = map(LANGUAGE.node_kind_for_id, range(LANGUAGE.node_kind_count))
+_KINDS = {name: kind(name) for name in _NODE_NAMES if name and LANGUAGE.id_for_node_kind(name, True)}
+_TOKENS = {"equals_sign": "=", "semicolon": ";", "colon": ":", "opening": "(", "closing": ")", "case_word": "case"}
+KIND = SimpleNamespace(**_KINDS, ERROR=kind("ERROR"), **{name: kind(sign, False) for name, sign in _TOKENS.items()})
+"""The number of each kind of node by its name in the grammar, `KIND.call_expression`, and of some signs."""
+LISTS = (KIND.argument_list, KIND.initializer_list)
+LITERALS = kinds(
+    "true", "false", "null", "number_literal", "char_literal", "string_literal", "raw_string_literal",
+    "concatenated_string",
 )  # fmt: skip
-TYPES = frozenset(
-    kind(name)
-    for name in (
-        "type_identifier", "primitive_type", "sized_type_specifier", "qualified_identifier", "template_type",
-        "placeholder_type_specifier", "decltype", "dependent_type", "auto",
-    )
+DECLARED_TYPES = kinds("class_specifier", "struct_specifier", "union_specifier", "enum_specifier")
+NAMES = kinds(
+    "identifier", "field_identifier", "qualified_identifier", "destructor_name", "operator_name", "operator_cast",
+    "type_identifier", "template_function", "template_method", "namespace_identifier",
+)  # fmt: skip
+PARAMETERS = kinds("parameter_declaration", "optional_parameter_declaration", "variadic_parameter_declaration")
+DECLARATORS = NAMES | kinds(
+    "function_declarator", "pointer_declarator", "reference_declarator", "array_declarator", "init_declarator",
+    "parenthesized_declarator", "structured_binding_declarator", "variadic_declarator", "attributed_declarator",
+)  # fmt: skip
+TYPES = kinds(
+    "type_identifier", "primitive_type", "sized_type_specifier", "qualified_identifier", "template_type",
+    "placeholder_type_specifier", "decltype", "dependent_type", "auto",
 )  # fmt: skip
 OPERATORS = {
     kind(sign, False): {"and": "&&", "or": "||"}.get(sign, sign)
@@ -102,8 +74,8 @@ def grammatical(node: Node) -> list[Node]:
     """The children of a node without comments."""
     children = node.children
     for child in children:
-        if child.kind_id == COMMENT:
-            return [child for child in children if child.kind_id != COMMENT]
+        if child.kind_id == KIND.comment:
+            return [child for child in children if child.kind_id != KIND.comment]
     return children
 
 
@@ -111,8 +83,8 @@ def listed_in(node: Node) -> list[Node]:
     """What is listed in parentheses or braces, without commas and comments."""
     children = node.named_children
     for child in children:
-        if child.kind_id == COMMENT:
-            return [child for child in children if child.kind_id != COMMENT]
+        if child.kind_id == KIND.comment:
+            return [child for child in children if child.kind_id != KIND.comment]
     return children
 
 

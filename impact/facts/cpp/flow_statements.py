@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Callable
 from typing import NamedTuple
 
 from tree_sitter import Node
@@ -16,22 +17,7 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import (
-    ASSERTS,
-    CALL,
-    COMMENT,
-    COMPOUND,
-    CONDITION,
-    DECLARATION,
-    DECLARED_TYPES,
-    ERROR,
-    FUNCTION_DECLARATOR,
-    NEVER_RETURNS,
-    PARAMETERS,
-    grammatical,
-    kind,
-    listed_in,
-)
+from .flow_grammar import ASSERTS, KIND, NEVER_RETURNS, grammatical, kinds, listed_in, node_readers
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
@@ -49,23 +35,7 @@ JUMPS = 1
 BREAKS = 2
 Leaving = int | tuple[FlowCondition, ...]
 
-ELSE = kind("else_clause")
-CASE = kind("case_statement")
-CATCH = kind("catch_clause")
-FIELD_INITIALIZERS = kind("field_initializer_list")
-EXPRESSION_STATEMENT = kind("expression_statement")
-IF = kind("if_statement")
-SEMICOLON = kind(";", False)
-COLON = kind(":", False)
-CASE_WORD = kind("case", False)
-INIT_STATEMENT = kind("init_statement")
-PREPROC_ELSE = kind("preproc_else")
-PREPROC_ELIF = kind("preproc_elif")
-PREPROC_ELIFDEF = kind("preproc_elifdef")
-PREPROC_IF = kind("preproc_if")
-PREPROC_IFDEF = kind("preproc_ifdef")
-ALTERNATIVES = (PREPROC_ELSE, PREPROC_ELIF, PREPROC_ELIFDEF)
-LABELED = kind("labeled_statement")
+ALTERNATIVES = (KIND.preproc_else, KIND.preproc_elif, KIND.preproc_elifdef)
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _CONTINUE = re.compile(r"\bcontinue\b")
@@ -118,20 +88,20 @@ class CppStatements(Declarations):
         if value is not None:
             value(self, node, guard, READ, "")
         elif node.child_count:
-            return self.block(node, guard)
+            return self.read_compound_statement(node, guard)
         return STAYS
 
     def regional(self, regions: Regions, node: Node, guard: int) -> int:
         """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
         start = node.start_byte
         parent = node.parent
-        if parent is not None and parent.kind_id == ELSE:
+        if parent is not None and parent.kind_id == KIND.else_clause:
             parent = parent.parent
         for region in regions.between(parent.start_byte if parent is not None else -1, start):
             guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
 
-    def block(self, node: Node, guard: int) -> Leaving:
+    def read_compound_statement(self, node: Node, guard: int) -> Leaving:
         return self.sequence(node.named_children, guard)
 
     def sequence(self, children: list[Node], guard: int) -> Leaving:
@@ -144,9 +114,9 @@ class CppStatements(Declarations):
         regions = self.regions
         for place, child in enumerate(children):
             number = child.kind_id
-            if number == COMMENT:
+            if number == KIND.comment:
                 continue
-            if jumped is not None and number != LABELED:
+            if jumped is not None and number != KIND.labeled_statement:
                 guard = self.never(jumped, guard)
                 jumped = None
             if headed is not None:
@@ -154,12 +124,12 @@ class CppStatements(Declarations):
                 headed = None
                 self.statement(child, outer)
                 continue
-            if number == EXPRESSION_STATEMENT and child.child_count == 2 and child.children[1].is_missing:
+            if number == KIND.expression_statement and child.child_count == 2 and child.children[1].is_missing:
                 if self.heads(child, children[place + 1 : place + 20]):
                     headed = child.children[0]
                     self.value(headed, guard)
                     continue
-            elif number == LABELED:
+            elif number == KIND.labeled_statement:
                 guard, conditions, ended, jumped = base, [], STAYS, None
             read = STATEMENTS.get(number) if regions is None else None
             leaving = self.statement(child, guard) if read is None else read(self, child, guard)
@@ -194,20 +164,18 @@ class CppStatements(Declarations):
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
         or further to the right."""
         following = next((child for child in children if child.start_byte >= node.end_byte and child.is_named), None)
-        if following is None or node.children[0].kind_id != CALL:
+        if following is None or node.children[0].kind_id != KIND.call_expression:
             return False
         _line, column = self.place(node.start_byte)
         next_line, next_column = self.place(following.start_byte)
         last_line = bisect_right(self.starts, node.end_byte)
         return next_line == last_line or (next_line <= last_line + 1 and next_column > column)
 
-    # Conditions
-
     def condition(self, node: Node, guard: int) -> str:
         """Reads the condition in parentheses of an if, while or switch; gives its text."""
         children = listed_in(node)
         for child in children:
-            if child.kind_id == INIT_STATEMENT:
+            if child.kind_id == KIND.init_statement:
                 for part in child.children:
                     if part.is_named:
                         self.statement(part, guard)
@@ -217,7 +185,7 @@ class CppStatements(Declarations):
             return ""
         return self.outer_text(children[-1])
 
-    def if_(self, node: Node, guard: int) -> Leaving:
+    def read_if_statement(self, node: Node, guard: int) -> Leaving:
         """An if with its chain of else-ifs, which is walked along since it is a deep tree."""
         branches: list[tuple[FlowCondition, Leaving]] = []
         last: Leaving = STAYS
@@ -227,11 +195,11 @@ class CppStatements(Declarations):
             other: Node | None = None
             for child in node.children:
                 number = child.kind_id
-                if number == CONDITION:
+                if number == KIND.condition_clause:
                     asked = child
-                elif number == ELSE:
+                elif number == KIND.else_clause:
                     other = child
-                elif asked is not None and child.is_named and number != COMMENT:
+                elif asked is not None and child.is_named and number != KIND.comment:
                     then = child
             if asked is None:
                 return self.sequence(node.named_children, guard)
@@ -243,11 +211,11 @@ class CppStatements(Declarations):
                 break
             guard = self.guard("unless", text, line, guard)
             follows = next(
-                (child for child in reversed(other.children) if child.is_named and child.kind_id != COMMENT), None
+                (child for child in reversed(other.children) if child.is_named and child.kind_id != KIND.comment), None
             )
             if follows is None:
                 break
-            if follows.kind_id == IF and self.regions is None:
+            if follows.kind_id == KIND.if_statement and self.regions is None:
                 node = follows
                 continue
             last = self.statement(follows, guard)
@@ -279,20 +247,18 @@ class CppStatements(Declarations):
                     result.append(FlowCondition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
         return tuple(result) or STAYS
 
-    # Loops
-
-    def while_(self, node: Node, guard: int) -> Leaving:
+    def read_while_statement(self, node: Node, guard: int) -> Leaving:
         asked: Node | None = None
         for child in node.children:
-            if child.kind_id == CONDITION:
+            if child.kind_id == KIND.condition_clause:
                 asked = child
-            elif asked is not None and child.is_named and child.kind_id != COMMENT:
+            elif asked is not None and child.is_named and child.kind_id != KIND.comment:
                 text = self.condition(asked, guard)
                 self.statement(child, self.guard("while", text, self.line(node), guard))
                 return STAYS
         return STAYS
 
-    def for_(self, node: Node, guard: int) -> Leaving:
+    def read_for_statement(self, node: Node, guard: int) -> Leaving:
         children = grammatical(node)
         semicolons = 0
         text = ""
@@ -301,13 +267,13 @@ class CppStatements(Declarations):
         closed = False
         for child in children:
             number = child.kind_id
-            if number == SEMICOLON:
+            if number == KIND.semicolon:
                 semicolons += 1
             elif not child.is_named:
-                closed = closed or child.kind_id == RIGHT_ROUND
+                closed = closed or child.kind_id == KIND.closing
             elif closed:
                 body = child
-            elif number in (DECLARATION, INIT_STATEMENT):
+            elif number in (KIND.declaration, KIND.init_statement):
                 self.statement(child, guard)
                 semicolons += 1
             elif semicolons == 0:
@@ -324,7 +290,7 @@ class CppStatements(Declarations):
             self.value(child, inner, READ, None)
         return STAYS
 
-    def range_for(self, node: Node, guard: int) -> Leaving:
+    def read_for_range_loop(self, node: Node, guard: int) -> Leaving:
         children = node.children
         declarator = node.child_by_field_name("declarator")
         walked = node.child_by_field_name("right")
@@ -333,8 +299,8 @@ class CppStatements(Declarations):
             return self.sequence(node.named_children, guard)
         container = self.value(walked, guard, READ)
         name, marks = self.declared(declarator)
-        head_end = next((child.start_byte for child in children if child.kind_id == RIGHT_ROUND), walked.end_byte)
-        head = next((child.end_byte for child in children if child.kind_id == LEFT_ROUND), node.start_byte)
+        head_end = next((child.start_byte for child in children if child.kind_id == KIND.closing), walked.end_byte)
+        head = next((child.end_byte for child in children if child.kind_id == KIND.opening), node.start_byte)
         line = self.line(node)
         inner = self.guard("for", flat(self.text[head:head_end]), line, guard)
         if name is not None:
@@ -348,7 +314,7 @@ class CppStatements(Declarations):
         self.statement(body, inner)
         return STAYS
 
-    def do(self, node: Node, guard: int) -> Leaving:
+    def read_do_statement(self, node: Node, guard: int) -> Leaving:
         body = node.child_by_field_name("body")
         asked = node.child_by_field_name("condition")
         if body is None or asked is None:
@@ -361,10 +327,8 @@ class CppStatements(Declarations):
         goes_on = _CONTINUE.search(self.text, body.start_byte, body.end_byte)
         return JUMPS if leaving == JUMPS and not goes_on else STAYS
 
-    # Switch
-
-    def switch(self, node: Node, guard: int) -> Leaving:
-        asked = next((child for child in node.children if child.kind_id == CONDITION), None)
+    def read_switch_statement(self, node: Node, guard: int) -> Leaving:
+        asked = next((child for child in node.children if child.kind_id == KIND.condition_clause), None)
         body = node.child_by_field_name("body")
         if asked is None or body is None:
             return self.sequence(node.named_children, guard)
@@ -395,40 +359,41 @@ class CppStatements(Declarations):
             if leaving in (JUMPS, BREAKS):
                 falling, other = [], False
         for child in body.children:
-            if child.kind_id != CASE and child.is_named and child.kind_id not in PREPROC:
+            if child.kind_id != KIND.case_statement and child.is_named and child.kind_id not in PREPROC:
                 self.statement(child, guard)
         return self.after_switch(subject, leavings, line)
 
     def cases(self, body: Node, condition: str | None = None):
         """The labels of a switch, nested ones too: value (None for default), node, statements, condition of #if."""
         for child in body.children:
-            if child.kind_id == CASE:
+            if child.kind_id == KIND.case_statement:
                 yield from self.labels(child, condition)
             elif child.kind_id in PREPROC:
                 asked, statements, rest = self.branch(child)
                 for part in statements:
-                    if part.kind_id == CASE:
+                    if part.kind_id == KIND.case_statement:
                         yield from self.labels(part, asked)
                 while rest is not None:
                     _, statements, rest = self.branch(rest)
                     for part in statements:
-                        if part.kind_id == CASE:
+                        if part.kind_id == KIND.case_statement:
                             yield from self.labels(part, f"!({asked})")
 
     def labels(self, case: Node, condition: str | None):
         children = case.children
-        colon = next((index for index, child in enumerate(children) if child.kind_id == COLON), len(children) - 1)
+        colon = next((index for index, child in enumerate(children) if child.kind_id == KIND.colon), len(children) - 1)
         value: str | None = None
-        if children[0].kind_id == CASE_WORD:
+        if children[0].kind_id == KIND.case_word:
             value = flat(self.text[children[0].end_byte : children[colon].start_byte])
         statements: list[Node] = []
         nested: Node | None = None
         for child in children[colon + 1 :]:
-            if child.kind_id == CASE:
+            if child.kind_id == KIND.case_statement:
                 nested = child
                 break
-            statements.append(child)
-        yield value, case, [child for child in statements if child.is_named and child.kind_id != COMMENT], condition
+            if child.is_named and child.kind_id != KIND.comment:
+                statements.append(child)
+        yield value, case, statements, condition
         if nested is not None:
             yield from self.labels(nested, condition)
 
@@ -464,25 +429,23 @@ class CppStatements(Declarations):
         code = " && ".join(f"{subject} != {value}" for value in values)
         return (FlowCondition("case", f"{subject} other than {', '.join(values)}", line, code),)
 
-    # Exceptions, jumps
-
-    def try_(self, node: Node, guard: int) -> Leaving:
+    def read_try_statement(self, node: Node, guard: int) -> Leaving:
         leaving: Leaving = STAYS
         caught: list[tuple[FlowCondition, Leaving]] = []
         for child in node.children:
             number = child.kind_id
-            if number == CATCH:
-                listed = next((part for part in child.children if part.kind_id == PARAMETERS), None)
+            if number == KIND.catch_clause:
+                listed = next((part for part in child.children if part.kind_id == KIND.parameter_list), None)
                 text = flat(self.text[listed.start_byte + 1 : listed.end_byte - 1]) if listed is not None else "..."
                 line = self.line(child)
                 self.parameters(listed)
-                body = next((part for part in child.children if part.kind_id == COMPOUND), None)
+                body = next((part for part in child.children if part.kind_id == KIND.compound_statement), None)
                 inner = self.guard("catch", text, line, guard)
                 left = self.statement(body, inner) if body is not None else STAYS
                 caught.append((FlowCondition("catch", text, line), left))
-            elif number == COMPOUND:
+            elif number == KIND.compound_statement:
                 leaving = self.statement(child, guard)
-            elif number == FIELD_INITIALIZERS:
+            elif number == KIND.field_initializer_list:
                 self.statement(child, guard)
         going_on = [asked for asked, left in caught if left != JUMPS and left != BREAKS]
         if leaving in (JUMPS, BREAKS):
@@ -497,59 +460,53 @@ class CppStatements(Declarations):
         )
         return conditions or STAYS
 
-    def returned(self, node: Node, guard: int) -> Leaving:
+    def read_return_statement(self, node: Node, guard: int) -> Leaving:
         for child in node.children:
-            if child.is_named and child.kind_id != COMMENT:
+            if child.is_named and child.kind_id != KIND.comment:
                 value = self.value(child, guard, ESCAPE, RETURN)
                 self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
         return JUMPS
 
-    def jump(self, node: Node, guard: int) -> Leaving:
-        return JUMPS
+    read_co_return_statement = read_return_statement
 
-    def broken(self, node: Node, guard: int) -> Leaving:
-        return BREAKS
-
-    def thrown_(self, node: Node, guard: int) -> Leaving:
+    def read_throw_statement(self, node: Node, guard: int) -> Leaving:
         self.anything(node, guard, ESCAPE, "")
         return JUMPS
 
-    def expression(self, node: Node, guard: int) -> Leaving:
+    def read_expression_statement(self, node: Node, guard: int) -> Leaving:
         child = node.children[0]
         number = child.kind_id
-        if number == COMMENT:
-            child = next((part for part in node.children if part.kind_id != COMMENT), child)
+        if number == KIND.comment:
+            child = next((part for part in node.children if part.kind_id != KIND.comment), child)
             number = child.kind_id
         value = VALUES[number](self, child, guard, READ, "")
-        if number == CALL:
+        if number == KIND.call_expression:
             if value.kind == "call":
                 if value.text in NEVER_RETURNS:
                     return JUMPS
                 if value.text in ASSERTS and value.parts:
                     arguments = child.children[-1].children
                     return (FlowCondition("if", self.outer_text(arguments[1]), self.line(node)),)
-        elif number == THROW:
+        elif number == KIND.throw_statement:
             return JUMPS
         return STAYS
 
-    def labeled(self, node: Node, guard: int) -> Leaving:
+    def read_labeled_statement(self, node: Node, guard: int) -> Leaving:
         return self.sequence(node.named_children[1:], guard)
 
-    def macro_block(self, node: Node, guard: int) -> Leaving:
+    def read_function_definition(self, node: Node, guard: int) -> Leaving:
         """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
         children = grammatical(node)
-        body = next((child for child in children if child.kind_id == COMPOUND), None)
-        head = next((child for child in children if child.kind_id == FUNCTION_DECLARATOR), None)
+        body = next((child for child in children if child.kind_id == KIND.compound_statement), None)
+        head = next((child for child in children if child.kind_id == KIND.function_declarator), None)
         if body is None or head is None:
             return self.sequence(node.named_children, guard)
         known = set(self.known)
-        self.parameters(next((part for part in head.children if part.kind_id == PARAMETERS), None), guard)
+        self.parameters(next((part for part in head.children if part.kind_id == KIND.parameter_list), None), guard)
         text = flat(self.text[node.start_byte : body.start_byte])
         self.statement(body, self.guard("macro", text, self.line(node), guard))
         self.known = known | self.known
         return STAYS
-
-    # Preprocessor
 
     def branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
         """The condition of an #if, #ifdef, #elif or #else, what stands in it, and the branch after it."""
@@ -581,7 +538,7 @@ class CppStatements(Declarations):
             end = self.text.find("\n", end + 1)
         return flat(self.text[start : end if end >= 0 else len(self.text)].replace("\\\n", " "))
 
-    def preprocessor(self, node: Node, guard: int) -> Leaving:
+    def read_preproc_if(self, node: Node, guard: int) -> Leaving:
         """#if in a function; its branches are walked along."""
         branch: Node | None = node
         asked_before = ""
@@ -609,61 +566,36 @@ class CppStatements(Declarations):
                 break
         return tuple(conditions) or STAYS
 
-    def unknown(self, node: Node, guard: int) -> Leaving:
+    read_preproc_ifdef = read_preproc_if
+
+    def read_ERROR(self, node: Node, guard: int) -> Leaving:
         """What did not parse: its pieces are read all the same, and nothing is concluded from their order."""
         for child in node.children:
             if child.is_named:
                 self.statement(child, guard)
         return STAYS
 
-    def local(self, node: Node, guard: int) -> Leaving:
+    def read_class_specifier(self, node: Node, guard: int) -> Leaving:
         self.local_type(node)
         return STAYS
 
-    def named(self, node: Node, guard: int) -> Leaving:
+    read_struct_specifier = read_union_specifier = read_enum_specifier = read_class_specifier
+
+    def read_alias_declaration(self, node: Node, guard: int) -> Leaving:
         self.local_name(node)
         return STAYS
 
-    def nothing(self, node: Node, guard: int) -> Leaving:
-        return STAYS
+    read_type_definition = read_using_declaration = read_namespace_alias_definition = read_alias_declaration
 
 
-LEFT_ROUND = kind("(", False)
-RIGHT_ROUND = kind(")", False)
-THROW = kind("throw_statement")
-PREPROC = frozenset((PREPROC_IF, PREPROC_IFDEF))
-STATEMENTS = {
-    COMPOUND: CppStatements.block,
-    EXPRESSION_STATEMENT: CppStatements.expression,
-    IF: CppStatements.if_,
-    kind("while_statement"): CppStatements.while_,
-    kind("for_statement"): CppStatements.for_,
-    kind("for_range_loop"): CppStatements.range_for,
-    kind("do_statement"): CppStatements.do,
-    kind("switch_statement"): CppStatements.switch,
-    kind("try_statement"): CppStatements.try_,
-    kind("return_statement"): CppStatements.returned,
-    kind("co_return_statement"): CppStatements.returned,
-    kind("continue_statement"): CppStatements.jump,
-    kind("break_statement"): CppStatements.broken,
-    kind("goto_statement"): CppStatements.jump,
-    THROW: CppStatements.thrown_,
-    LABELED: CppStatements.labeled,
-    kind("function_definition"): CppStatements.macro_block,
-    PREPROC_IF: CppStatements.preprocessor,
-    PREPROC_IFDEF: CppStatements.preprocessor,
-    ERROR: CppStatements.unknown,
-    COMMENT: CppStatements.nothing,
-    **{
-        kind(name): CppStatements.named
-        for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")
-    },
-    **{number: CppStatements.local for number in DECLARED_TYPES},
-    **{
-        kind(name): CppStatements.nothing
-        for name in (
-            "preproc_def", "preproc_function_def", "preproc_call", "preproc_include", "static_assert_declaration",
-            "access_specifier",
-        )
-    },
+PREPROC = kinds("preproc_if", "preproc_ifdef")
+STATEMENTS: dict[int, Callable[..., Leaving]] = {
+    **node_readers(CppStatements, "read_"),
+    **dict.fromkeys(kinds("continue_statement", "goto_statement"), lambda *_: JUMPS),
+    **dict.fromkeys(kinds("break_statement"), lambda *_: BREAKS),
+    **dict.fromkeys(
+        kinds("comment", "preproc_def", "preproc_function_def", "preproc_call", "preproc_include",
+              "static_assert_declaration", "access_specifier"),
+        lambda *_: STAYS,
+    ),
 }  # fmt: skip

@@ -20,41 +20,23 @@ from tree_sitter import Node
 from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
 from .flow_grammar import (
-    ARGUMENTS,
-    BINARY,
     BINDS,
-    BRACES,
-    CALL,
-    CAST,
     CHANGES,
-    COMMENT,
-    DEPENDENT,
     ELEMENTS,
-    ERROR,
-    FIELD,
-    FIELD_IDENTIFIER,
-    IDENTIFIER,
     JOINING,
+    KIND,
     LISTS,
+    LITERALS,
     LOOKS,
     MAKES,
     OPERATORS,
-    PARENTHESIZED,
     POINTEES,
-    POINTER,
-    QUALIFIED,
-    RAW_STRING,
     SAFE,
     SILENT,
-    STRING,
-    SUBSCRIPT,
-    TEMPLATE_FUNCTION,
-    TEMPLATE_METHOD,
-    THIS,
     THROUGH,
     grammatical,
-    kind,
     listed_in,
+    node_readers,
     noise,
 )
 
@@ -136,8 +118,6 @@ class FunctionReader:
     def restore(self, state: tuple[Any, ...]) -> None:
         self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known = state
 
-    # Text and places
-
     def said(self, node: Node) -> str:
         """The source of a node on one line."""
         text = self.text[node.start_byte : node.end_byte]
@@ -156,8 +136,6 @@ class FunctionReader:
         """A new guard around what follows; gives its place."""
         self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
         return len(self.guards) - 1
-
-    # Expressions
 
     def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> FlowExpr:
         """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,
@@ -178,10 +156,13 @@ class FunctionReader:
                 self.anything(child, guard, position, None)
         return NOTHING if target is None else self.other(node)
 
-    def skipped(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_comment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.other(node)
 
-    def identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_type_descriptor = value_template_argument_list = value_primitive_type = value_comment
+    value_type_identifier = value_field_identifier = value_comment
+
+    def value_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         start = node.start_byte
         name = self.text[start : node.end_byte]
         if name in self.known:
@@ -190,22 +171,23 @@ class FunctionReader:
             )
         return FlowExpr("name", name)
 
-    def number(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_number_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
-    def this(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
-        return FlowExpr("name", "this")
+    value_true = value_false = value_null = value_char_literal = value_number_literal
 
-    def string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_string_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
             return FlowExpr("text", text[1:-1])
         return FlowExpr("text", self.literal(node))
 
+    value_raw_string_literal = value_string_literal
+
     def literal(self, node: Node) -> str:
         """The value of a string literal."""
         text = self.text[node.start_byte : node.end_byte]
-        if node.kind_id == RAW_STRING:
+        if node.kind_id == KIND.raw_string_literal:
             start, end = text.find("("), text.rfind(")")
             return text[start + 1 : end] if start >= 0 else ""
         text = text[text.find('"') + 1 : -1]
@@ -213,34 +195,27 @@ class FunctionReader:
             text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
         return text
 
-    def strings(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_concatenated_string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
-            if number in (STRING, RAW_STRING):
+            if number in (KIND.string_literal, KIND.raw_string_literal):
                 text = self.literal(child)
                 if parts and parts[-1].kind == "text":
                     text = parts.pop().text + text
                 parts.append(FlowExpr("text", text))
-            elif number == IDENTIFIER:
+            elif number == KIND.identifier:
                 parts.append(FlowExpr("name", self.text[child.start_byte : child.end_byte]))
         if len(parts) == 1:
             return parts[0]
         return FlowExpr("join", "+", tuple(parts))
 
-    def qualified(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_qualified_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
 
-    def field(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
-        start = node.start_byte
-        plain = _PLAIN.fullmatch(self.text, start, node.end_byte)
-        if plain is not None:
-            path = plain[0].replace("->", ".")
-            if plain[1] is None and plain[2] in self.known:
-                self.accesses.append(
-                    Access(path, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
-                )
-            return FlowExpr("name", path)
+    value_template_function = value_this = value_qualified_identifier
+
+    def value_field_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         path, local = self.path(node, guard)
         if local:
             self.touch(path, node, guard, position)
@@ -254,37 +229,35 @@ class FunctionReader:
     def path(self, node: Node, guard: int) -> tuple[str, bool]:
         """A path and whether it begins at a variable of the function; what stands inside, such as an index, is read."""
         number = node.kind_id
-        if number == IDENTIFIER:
+        if number == KIND.identifier:
             name = self.text[node.start_byte : node.end_byte]
             return name, name in self.known
-        if number == FIELD:
-            plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
+        if number == KIND.field_expression:
+            plain = self.plain(node)
             if plain is not None:
-                return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
+                return plain
             children = grammatical(node)
             path, local = self.path(children[0], guard)
             return f"{path}.{self.member(children[-1])}", local
-        if number == THIS:
-            return "this", False
-        if number == QUALIFIED:
+        if number in (KIND.this, KIND.qualified_identifier):
             return bare(self.text[node.start_byte : node.end_byte]), False
-        if number in (PARENTHESIZED, POINTER, CAST):
+        if number in (KIND.parenthesized_expression, KIND.pointer_expression, KIND.cast_expression):
             children = grammatical(node)
-            return self.path(children[1] if number == PARENTHESIZED else children[-1], guard)
-        if number == SUBSCRIPT:
+            return self.path(children[1] if number == KIND.parenthesized_expression else children[-1], guard)
+        if number == KIND.subscript_expression:
             children = grammatical(node)
             path, local = self.path(children[0], guard)
             for index in listed_in(children[1]):
                 self.value(index, guard)
             return f"{path}.[]", local
-        if number == CALL:
+        if number == KIND.call_expression:
             children = grammatical(node)
             function = children[0]
-            if function.kind_id == FIELD:
+            if function.kind_id == KIND.field_expression:
                 method = self.member(function.children[-1])
                 if method in ELEMENTS or method in POINTEES:
                     if method in POINTEES:
-                        self.call(node, guard, READ, "")
+                        self.value_call_expression(node, guard, READ, "")
                         receiver = self.plain(function.children[0])
                         return receiver if receiver is not None else (self.receiver(node), False)
                     path, local = self.path(function.children[0], guard)
@@ -295,7 +268,7 @@ class FunctionReader:
                 arguments = listed_in(children[-1])
                 if len(arguments) == 1 and self.called(node) in THROUGH:
                     return self.path(arguments[0], guard)
-            self.received = self.call(node, guard, ESCAPE, "")
+            self.received = self.value_call_expression(node, guard, ESCAPE, "")
             return self.called(node) + "()", False
         self.received = self.value(node, guard, ESCAPE)
         return "()", False
@@ -311,35 +284,31 @@ class FunctionReader:
         """The callee of a call, by its text alone."""
         function = node.children[0]
         number = function.kind_id
-        if number == FIELD:
+        if number == KIND.field_expression:
             children = grammatical(function)
             return f"{self.receiver(children[0])}.{self.member(children[-1])}"
-        if number in (IDENTIFIER, QUALIFIED, TEMPLATE_FUNCTION):
+        if number in (KIND.identifier, KIND.qualified_identifier, KIND.template_function):
             return bare(self.text[function.start_byte : function.end_byte])
         return self.receiver(function)
 
     def receiver(self, node: Node) -> str:
         """What a method is called on, as a path; nothing is noted."""
         number = node.kind_id
-        if number == THIS:
-            return "this"
-        if number == IDENTIFIER:
-            return self.text[node.start_byte : node.end_byte]
-        if number == QUALIFIED:
+        if number in (KIND.this, KIND.identifier, KIND.qualified_identifier):
             return bare(self.text[node.start_byte : node.end_byte])
-        if number == FIELD:
+        if number == KIND.field_expression:
             plain = self.plain(node)
             if plain is not None:
                 return plain[0]
             children = grammatical(node)
             return f"{self.receiver(children[0])}.{self.member(children[-1])}"
-        if number == PARENTHESIZED:
+        if number == KIND.parenthesized_expression:
             return self.receiver(grammatical(node)[1])
-        if number in (POINTER, CAST):
+        if number in (KIND.pointer_expression, KIND.cast_expression):
             return self.receiver(grammatical(node)[-1])
-        if number == SUBSCRIPT:
+        if number == KIND.subscript_expression:
             return self.receiver(node.children[0]) + ".[]"
-        if number == CALL:
+        if number == KIND.call_expression:
             name = self.called(node)
             if name in THROUGH:
                 arguments = listed_in(node.children[-1])
@@ -355,17 +324,23 @@ class FunctionReader:
 
     def member(self, node: Node) -> str:
         """The name of a member in a field expression, without template arguments."""
-        if node.kind_id == FIELD_IDENTIFIER:
+        if node.kind_id == KIND.field_identifier:
             return self.text[node.start_byte : node.end_byte]
-        if node.kind_id == DEPENDENT:
+        if node.kind_id == KIND.dependent_name:
             node = node.children[-1]
         return bare(self.text[node.start_byte : node.end_byte])
 
-    def call(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def templated(self, node: Node) -> tuple[str, str]:
+        """The name and the arguments of a template, as written."""
+        name, written = node.children[0], node.children[-1]
+        types = flat(self.text[written.start_byte + 1 : written.end_byte - 1])
+        return self.text[name.start_byte : name.end_byte], types
+
+    def value_call_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
-            children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+            children = [child for child in children if child.kind_id not in (KIND.comment, KIND.ERROR)]
             if len(children) < 2:
                 return self.anything(node, guard, position, target)
         function = children[0]
@@ -377,9 +352,9 @@ class FunctionReader:
         local = False
         receiver = ""
         received: FlowExpr | None = None
-        if number == IDENTIFIER:
+        if number == KIND.identifier:
             callee = text[start : function.end_byte]
-        elif number == FIELD:
+        elif number == KIND.field_expression:
             plain = _PLAIN.fullmatch(text, start, function.end_byte)
             if plain is not None:
                 callee = plain[0].replace("->", ".")
@@ -389,35 +364,30 @@ class FunctionReader:
             else:
                 parts = grammatical(function)
                 member = parts[-1]
-                if member.kind_id == DEPENDENT:
+                if member.kind_id == KIND.dependent_name:
                     member = member.children[-1]
                 at = member.start_byte
-                if member.kind_id == TEMPLATE_METHOD:
-                    name, written = member.children[0], member.children[-1]
-                    method = text[name.start_byte : name.end_byte]
-                    types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+                if member.kind_id == KIND.template_method:
+                    method, types = self.templated(member)
                 else:
                     method = self.member(member)
                 receiver, local = self.path(parts[0], guard)
                 if receiver.endswith("()"):
                     received = self.received
                 callee = f"{receiver}.{method}"
-        elif number == QUALIFIED:
+        elif number == KIND.qualified_identifier:
             callee = text[start : function.end_byte]
             name = function
-            while name.kind_id == QUALIFIED:
+            while name.kind_id == KIND.qualified_identifier:
                 name = name.children[-1]
             at = name.start_byte
-            if name.kind_id == DEPENDENT:
+            if name.kind_id == KIND.dependent_name:
                 name = name.children[-1]
-            if name.kind_id in (TEMPLATE_FUNCTION, TEMPLATE_METHOD):
-                written = name.children[-1]
-                types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+            if name.kind_id in (KIND.template_function, KIND.template_method):
+                _, types = self.templated(name)
             callee = bare(callee)
-        elif number == TEMPLATE_FUNCTION:
-            name, written = function.children[0], function.children[-1]
-            callee = text[name.start_byte : name.end_byte]
-            types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+        elif number == KIND.template_function:
+            callee, types = self.templated(function)
         else:
             callee, local = self.path(function, guard)
             if local:
@@ -452,18 +422,8 @@ class FunctionReader:
             return FlowExpr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
             line, column = self.place(at)
-            self.calls.append(
-                FlowCall(
-                    callee,
-                    arguments,
-                    line,
-                    column,
-                    guard,
-                    types,
-                    "" if target == RETURN else target or "",
-                    target == RETURN,
-                )
-            )
+            kept = "" if target is None or target == RETURN else target
+            self.calls.append(FlowCall(callee, arguments, line, column, guard, types, kept, target == RETURN))
         if target is None:
             return NOTHING
         if self.nesting > DEEPEST:
@@ -479,7 +439,7 @@ class FunctionReader:
         known = self.known
         for child in listed.named_children:
             number = child.kind_id
-            if number == IDENTIFIER:
+            if number == KIND.identifier:
                 start = child.start_byte
                 name = text[start : child.end_byte]
                 if name in known:
@@ -490,12 +450,12 @@ class FunctionReader:
                         else Access(name, "read", line, guard)
                     )
                 result.append(FlowExpr("name", name))
-            elif number != COMMENT:
+            elif number != KIND.comment:
                 position = ("pass", callee, len(result)) if callee else READ
                 result.append(VALUES[number](self, child, guard, position, ""))
         return tuple(result)
 
-    def subscript(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_subscript_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         path, local = self.path(children[0], guard)
         index = FlowExpr("other")
@@ -505,29 +465,33 @@ class FunctionReader:
             self.touch(f"{path}.[]", node, guard, position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def parenthesized(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_parenthesized_expression(
+        self, node: Node, guard: int, position: Position, target: str | None
+    ) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
         return self.value(children[1], guard, position, target)
 
-    def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_pointer_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
             number = inner.kind_id
-            if number in (QUALIFIED, TEMPLATE_FUNCTION):
+            if number in (KIND.qualified_identifier, KIND.template_function):
                 return FlowExpr("function", bare(self.text[inner.start_byte : inner.end_byte]))
-            if number == IDENTIFIER:
+            if number == KIND.identifier:
                 name = self.text[inner.start_byte : inner.end_byte]
                 if name and name not in self.known and not name.endswith("_"):
                     return FlowExpr("function", name)
         return self.value(inner, guard, position, target)
 
-    def last_child(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_cast_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.value(grammatical(node)[-1], guard, position, target)
 
-    def binary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_initializer_pair = value_co_await_expression = value_cast_expression
+
+    def value_binary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """Operators in a row are walked through, since a long row is a deep tree."""
         operands: list[Node] = []
         signs: list[str] = []
@@ -536,18 +500,18 @@ class FunctionReader:
         while True:
             children = spine.children
             if len(children) != 3:
-                children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+                children = [child for child in children if child.kind_id not in (KIND.comment, KIND.ERROR)]
                 if len(children) != 3:
                     break
             operands.append(children[2])
             signs.append(OPERATORS.get(children[1].kind_id, "?"))
             spine = children[0]
             lefts.append(spine)
-            if spine.kind_id != BINARY:
+            if spine.kind_id != KIND.binary_expression:
                 break
         if not operands:
             return self.anything(node, guard, position, target)
-        if spine.kind_id == BINARY:
+        if spine.kind_id == KIND.binary_expression:
             self.anything(spine, guard, ESCAPE, None)
         operands.append(spine)
         operands.reverse()
@@ -573,7 +537,7 @@ class FunctionReader:
                         guard = self.guard(holds, self.outer_text(asked), self.line(asked), guard)
                     pending = []
             if number in LITERALS:
-                read = LITERALS[number](self, operand, guard, READ, "")
+                read = VALUES[number](self, operand, guard, READ, "")
             else:
                 if sign in SAFE or (sign in ("==", "!=") and self.literal_beside(operands, index)):
                     where = READ
@@ -591,14 +555,14 @@ class FunctionReader:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
-    def unary(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_unary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = self.value(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
             return FlowExpr("number", "-" + inner.text)
         return NOTHING if target is None else self.other(node)
 
-    def update(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_update_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
         path, local = self.path(operand, guard)
@@ -612,7 +576,7 @@ class FunctionReader:
         self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.line(node), guard, "", sign))
         return FlowExpr("name", path)
 
-    def assignment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_assignment_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
@@ -628,12 +592,12 @@ class FunctionReader:
 
     def key(self, node: Node, guard: int) -> FlowExpr | None:
         """The literal in the brackets of an element's path."""
-        if node.kind_id != SUBSCRIPT:
+        if node.kind_id != KIND.subscript_expression:
             return None
         inner = listed_in(grammatical(node)[1])
         return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
-    def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_conditional_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 5:
             return self.anything(node, guard, position, target)
@@ -651,14 +615,14 @@ class FunctionReader:
 
     def outer_text(self, node: Node) -> str:
         """A condition as written, without parentheses around the whole."""
-        while node.kind_id == PARENTHESIZED:
+        while node.kind_id == KIND.parenthesized_expression:
             children = grammatical(node)
             if len(children) != 3:
                 break
             node = children[1]
         return self.said(node)
 
-    def braces(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_initializer_list(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
             self.anything(node, guard, ESCAPE, "")
             return self.other(node)
@@ -667,14 +631,14 @@ class FunctionReader:
         self.nesting -= 1
         return FlowExpr("list", "", parts)
 
-    def made(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_new_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
         children = grammatical(node)
         kind_ = ""
         parts: tuple[FlowExpr, ...] = ()
         self.nesting += 1
         for child in children:
-            if child.kind_id in (ARGUMENTS, BRACES):
+            if child.kind_id in (KIND.argument_list, KIND.initializer_list):
                 parts = self.arguments(child, guard, bare(kind_) or "new")
             elif child.is_named and not kind_:
                 kind_ = self.said(child)
@@ -683,23 +647,19 @@ class FunctionReader:
             return self.other(node)
         return FlowExpr("make", kind_, parts)
 
-    def thrown(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    value_compound_literal_expression = value_new_expression
+
+    def value_throw_statement(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         return self.anything(node, guard, ESCAPE, "")
 
-    def asked_only(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_sizeof_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
                 read(self, child, guard, READ, "")
         return self.other(node)
 
-
-LITERALS: dict[int, Callable[..., FlowExpr]] = {
-    **{kind(name): FunctionReader.number for name in ("true", "false", "null", "number_literal", "char_literal")},
-    STRING: FunctionReader.string,
-    RAW_STRING: FunctionReader.string,
-    kind("concatenated_string"): FunctionReader.strings,
-}
+    value_delete_expression = value_sizeof_expression
 
 
 class _Readers(dict[int, Callable[..., FlowExpr]]):
@@ -709,37 +669,4 @@ class _Readers(dict[int, Callable[..., FlowExpr]]):
         return FunctionReader.anything
 
 
-VALUES = _Readers(
-    {
-        **LITERALS,
-        IDENTIFIER: FunctionReader.identifier,
-        QUALIFIED: FunctionReader.qualified,
-        TEMPLATE_FUNCTION: FunctionReader.qualified,
-        FIELD: FunctionReader.field,
-        THIS: FunctionReader.this,
-        CALL: FunctionReader.call,
-        SUBSCRIPT: FunctionReader.subscript,
-        PARENTHESIZED: FunctionReader.parenthesized,
-        POINTER: FunctionReader.pointer,
-        CAST: FunctionReader.last_child,
-        BINARY: FunctionReader.binary,
-        kind("unary_expression"): FunctionReader.unary,
-        kind("update_expression"): FunctionReader.update,
-        kind("assignment_expression"): FunctionReader.assignment,
-        kind("conditional_expression"): FunctionReader.conditional,
-        BRACES: FunctionReader.braces,
-        kind("initializer_pair"): FunctionReader.last_child,
-        kind("new_expression"): FunctionReader.made,
-        kind("compound_literal_expression"): FunctionReader.made,
-        kind("co_await_expression"): FunctionReader.last_child,
-        kind("throw_statement"): FunctionReader.thrown,
-        kind("sizeof_expression"): FunctionReader.asked_only,
-        kind("delete_expression"): FunctionReader.asked_only,
-        COMMENT: FunctionReader.skipped,
-        kind("type_descriptor"): FunctionReader.skipped,
-        kind("template_argument_list"): FunctionReader.skipped,
-        kind("primitive_type"): FunctionReader.skipped,
-        kind("type_identifier"): FunctionReader.skipped,
-        kind("field_identifier"): FunctionReader.skipped,
-    }
-)
+VALUES = _Readers(node_readers(FunctionReader, "value_"))

@@ -7,7 +7,7 @@ into segments, and names are collected per segment. Nothing is expanded: what a 
 import re
 import sys
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from itertools import accumulate, count
 from operator import add
@@ -148,6 +148,42 @@ def line_starts(text: str) -> list[int]:
     return [0, *map(add, accumulate(map(len, text.split("\n"))), count(1))]
 
 
+_NOT_NEWLINE = re.compile(r"[^\n]+")
+
+
+def blanked(text: str, gone: Iterable[tuple[int, int]]) -> str:
+    """A text with some stretches blanked, its lines as they are. gone: sorted, where each begins and ends."""
+    pieces: list[str] = []
+    position = 0
+    for start, end in gone:
+        if end > position:
+            start = max(start, position)
+            pieces += [text[position:start], _NOT_NEWLINE.sub(blanks, text[start:end])]
+            position = end
+    return "".join(pieces) + text[position:]
+
+
+def blanks(match: re.Match[str]) -> str:
+    """As many blanks as what was found has characters."""
+    return " " * len(match[0])
+
+
+# Where a directive begins and ends, its word, and what follows that.
+Directive = tuple[int, int, str, str]
+
+
+def conditional_blocks(directives: Iterable[Directive]) -> Iterator[list[Directive]]:
+    """The directives of every #if that is closed, from it to its #endif; inner ones first."""
+    opened: list[list[Directive]] = []
+    for directive in directives:
+        if directive[2] in ("if", "ifdef", "ifndef"):
+            opened.append([directive])
+        elif opened and directive[2] in ("elif", "elifdef", "elifndef", "else"):
+            opened[-1].append(directive)
+        elif opened and directive[2] == "endif":
+            yield [*opened.pop(), directive]
+
+
 class _Blocks:
     """The stack of open #if blocks; gives the conditions in force."""
 
@@ -169,18 +205,12 @@ class _Blocks:
         key = tuple(result)
         return self.kept.setdefault(key, key)
 
-    def enter(self, own: Condition | None) -> None:
-        self.open.append(([], own))
-
     def turn(self, own: Condition | None) -> None:
         """Into the next branch: the one left is negated. own is None for #else."""
         earlier, last = self.open.pop()
         if last is not None and len(earlier) <= MOST_BRANCHES:
             earlier.append(Condition("cpp", last.text, not last.negated))
         self.open.append((earlier, own))
-
-    def leave(self) -> None:
-        self.open.pop()
 
 
 def _condition(keyword: str, text: str) -> Condition:
@@ -304,11 +334,11 @@ def scan(data: bytes) -> Scan:
         if guard and index in guard:
             continue
         if keyword in ("if", "ifdef", "ifndef"):
-            blocks.enter(_condition(keyword, body))
+            blocks.open.append(([], _condition(keyword, body)))
         elif not blocks.open:
             problems.append(Problem(place(start)[0], f"`#{keyword}` without `#if`"))
         elif keyword == "endif":
-            blocks.leave()
+            blocks.open.pop()
         else:
             blocks.turn(None if keyword == "else" else _condition(keyword, body))
         conditions = blocks.conditions()

@@ -17,6 +17,11 @@ def without_templates(text: str) -> str:
     return "".join(text.split())
 
 
+def joined(scope: str, name: str) -> str:
+    """A name in a scope, each of which may be empty."""
+    return f"{scope}::{name}" if scope and name else scope or name
+
+
 def split_at_commas(text: str) -> list[str]:
     """The parts of a list, split at commas outside of brackets of every kind, `<>` among them."""
     parts, depth, begins = [], 0, 0

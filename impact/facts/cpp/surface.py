@@ -10,10 +10,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..surface import Entity, HeaderSurface
-from . import Scan, includes_of, scan
+from .lexical import Scan, includes_of, scan
 from .surface_declarations import (
     ClassHead,
     Declarator,
@@ -89,6 +89,8 @@ class _Reader:
         self.lost = 0
         self.deprecated: str | None = None
         self.access = ""
+        # Where the declaration that is read begins and ends.
+        self.span = (0, 0)
         self.code, macros = without_directives(scanned)
         self.entities += macros
 
@@ -114,8 +116,6 @@ class _Reader:
             tuple(scanned.problems),
             tuple(self.announced),
         )
-
-    # Declarations
 
     def _walk(self) -> None:
         code = self.code
@@ -172,7 +172,7 @@ class _Reader:
                         resume = (marks[other + 1] + 1, other + 2)
                     else:
                         tail = []
-                if not self._type(opened.reading, opened.found, tail, start, at, behind - 1, resume):
+                if not self._type(opened.reading, opened.found, tail, behind - 1, resume):
                     start, index = resume
                     continue
                 accesses.append(self.access)
@@ -185,6 +185,7 @@ class _Reader:
 
     def _opened(self, start: int, at: int, head: str) -> _Opened:
         """What a `{` opens. The function whose body it is, is read."""
+        self.span = (start, at)
         stripped = head.rstrip()
         last = stripped[-1:]
         if not last:
@@ -197,13 +198,13 @@ class _Reader:
             return _INIT
         if stripped.count("(") != stripped.count(")"):
             return _INIT if stripped.count("(") > stripped.count(")") else _BODY
-        tokens, deprecated = self._tokens(start, at, head)
+        tokens, deprecated = self._tokens(head)
         scope = self.scopes[-1]
         reading = head_of(tokens, scope.class_name)
         place = reading.place
         if place >= len(tokens):
             if "linkage" in reading.words:
-                self._expanded(reading, start, at)
+                self._expanded(reading)
                 return _Opened("linkage", tokens, reading)
             if reading.macros and not scope.class_name:
                 # a macro that opens a block
@@ -212,7 +213,7 @@ class _Reader:
             return _BODY
         word = tokens[place]
         if word == "namespace" or (word == "inline" and tokens[place + 1 : place + 2] == ["namespace"]):
-            self._expanded(reading, start, at)
+            self._expanded(reading)
             return _Opened("namespace", tokens, reading)
         while word in ("const", "volatile") and place + 1 < len(tokens):
             place += 1
@@ -220,7 +221,7 @@ class _Reader:
         if word in ("class", "struct", "union", "enum"):
             found = class_head(tokens, place)
             if found is not None:
-                self._expanded(reading, start, at)
+                self._expanded(reading)
                 if deprecated is not None:
                     reading = reading._replace(words=reading.words | {"deprecated:" + deprecated})
                 return _Opened("type", tokens, reading, found)
@@ -238,10 +239,11 @@ class _Reader:
                 or all(token in _BODY_WORDS or token in ("&", "&&") or token.isupper() for token in behind)
             ):
                 return _INIT
-        self._declare(tokens, reading, deprecated, start, at)
+        self._declare(tokens, reading, deprecated)
         return _BODY
 
-    def _tokens(self, start: int, at: int, head: str) -> tuple[list[str], str | None]:
+    def _tokens(self, head: str) -> tuple[list[str], str | None]:
+        start, at = self.span
         if '"' in head or ("=" in head and "'" in self.text[start:at]):
             head = self._restored(start, at, head)
         tokens = tokens_of(head.lstrip())
@@ -266,7 +268,7 @@ class _Reader:
                     behind = place + 1
                     if tokens[behind] == "(":
                         behind = closed(tokens, behind)
-                    self._macro(word[0], tuple(tokens[place + 2 : behind - 1]), start, at)
+                    self._macro(word[0], tuple(tokens[place + 2 : behind - 1]))
                     place = behind
                     continue
                 break
@@ -296,8 +298,9 @@ class _Reader:
         return "".join(pieces)
 
     def _statement(self, start: int, at: int) -> None:
+        self.span = (start, at)
         head = self.code[start:at]
-        tokens, deprecated = self._tokens(start, at, head)
+        tokens, deprecated = self._tokens(head)
         if not tokens:
             return
         first = tokens[0]
@@ -305,7 +308,7 @@ class _Reader:
         if first in ("public", "private", "protected"):
             return
         reading = head_of(tokens, scope.class_name)
-        self._expanded(reading, start, at)
+        self._expanded(reading)
         place = reading.place
         if place >= len(tokens) or "instantiation" in reading.words:
             return
@@ -313,24 +316,20 @@ class _Reader:
             return
         word = tokens[place]
         if word == "using":
-            self._using(tokens[place + 1 :], reading, deprecated, start, at)
+            self._using(tokens[place + 1 :], reading, deprecated)
         elif word == "namespace":
             if "=" in tokens:
                 cut = tokens.index("=")
-                self._add(
-                    "namespace alias", tokens[cut - 1], start, at, type=joined(tokens[cut + 1 :]).removeprefix("::")
-                )
+                self._add("namespace alias", tokens[cut - 1], type=joined(tokens[cut + 1 :]).removeprefix("::"))
         elif word in ("static_assert", "_Static_assert", "_Pragma", "asm", "return"):
             return
         elif word == "concept":
-            self._add(
-                "concept", tokens[place + 1] if place + 1 < len(tokens) else "", start, at, template=reading.template
-            )
+            self._add("concept", "".join(tokens[place + 1 : place + 2]), template=reading.template)
         elif word in ("class", "struct", "union", "enum") and (forward := self._forward(tokens, place, reading)):
             if not scope.class_name and not reading.specialised and forward.name:
                 self.announced[scope.prefix + forward.name] = None
         else:
-            self._declare(tokens, reading, deprecated, start, at)
+            self._declare(tokens, reading, deprecated)
 
     def _forward(self, tokens: list[str], place: int, reading: Head) -> ClassHead | None:
         """The type that a statement declares and does not define."""
@@ -339,25 +338,18 @@ class _Reader:
             return None
         return found
 
-    def _using(self, rest: list[str], reading: Head, deprecated: str | None, start: int, at: int) -> None:
+    def _using(self, rest: list[str], reading: Head, deprecated: str | None) -> None:
         if not rest:
             return
         if rest[0] == "namespace":
             scope = self.scopes[-1].prefix[:-2]
             name = joined(rest[1:]).removeprefix("::")
-            self._add("using namespace", scope, start, at, type=name, whole=True)
+            self._add("using namespace", scope, type=name, whole=True)
             return
         if "=" in rest and rest[0] != "enum":
             cut = rest.index("=")
-            self._add(
-                "alias",
-                rest[0],
-                start,
-                at,
-                type=type_text(rest[cut + 1 :]),
-                template=reading.template,
-                deprecated=deprecated,
-            )
+            type_ = type_text(rest[cut + 1 :])
+            self._add("alias", rest[0], type=type_, template=reading.template, deprecated=deprecated)
             return
         for piece in split(rest):
             words = [word for word in piece if word not in ("typename", "...")]
@@ -367,33 +359,31 @@ class _Reader:
             else:
                 name = next((word for word in reversed(words) if word.isidentifier()), "")
             if name and "::" in words:
-                self._add("using", name, start, at, type=joined(words).removeprefix("::"), deprecated=deprecated)
+                self._add("using", name, type=joined(words).removeprefix("::"), deprecated=deprecated)
 
-    def _expanded(self, reading: Head, start: int, at: int) -> None:
+    def _expanded(self, reading: Head) -> None:
         for name, arguments in reading.macros:
-            self._macro(name, arguments, start, at)
+            self._macro(name, arguments)
 
-    def _macro(self, name: str, arguments: tuple[str, ...], start: int, at: int) -> None:
+    def _macro(self, name: str, arguments: tuple[str, ...]) -> None:
         if name not in DECLARES:
             if any(mark in name for mark in _HEADER_MACROS) and self.deprecated is None:
                 self.deprecated = "".join(word[1:-1] for word in arguments if word[:1] == '"')
             return
         for tokens in expansion(name, arguments):
             scope = self.scopes[-1]
-            self._declare_macro(tokens, head_of(tokens, scope.class_name), name, start, at)
+            self._declare_macro(tokens, head_of(tokens, scope.class_name), name)
 
-    def _declare_macro(self, tokens: list[str], reading: Head, macro: str, start: int, at: int) -> None:
+    def _declare_macro(self, tokens: list[str], reading: Head, macro: str) -> None:
         place = reading.place
         if tokens[place : place + 1] == ["using"]:
             cut = tokens.index("=")
-            self._add(
-                "alias", tokens[place + 1], start, at, type=type_text(tokens[cut + 1 :]), macro=macro, at_word=macro
-            )
+            self._add("alias", tokens[place + 1], type=type_text(tokens[cut + 1 :]), macro=macro, at_word=macro)
             return
         for one in declared(tokens, reading, self.scopes[-1].class_name) or ():
-            self._emit(one, reading, None, start, at, macro)
+            self._emit(one, reading, None, macro)
 
-    def _declare(self, tokens: list[str], reading: Head, deprecated: str | None, start: int, at: int) -> None:
+    def _declare(self, tokens: list[str], reading: Head, deprecated: str | None) -> None:
         scope = self.scopes[-1]
         place = reading.place
         # a macro call that ends with `;` or a block
@@ -404,18 +394,18 @@ class _Reader:
             and (word in DECLARES or any(mark in word for mark in _HEADER_MACROS))
             and closed(tokens, place + 1) >= len(tokens)
         ):
-            self._macro(word, tuple(tokens[place + 2 : -1]), start, at)
+            self._macro(word, tuple(tokens[place + 2 : -1]))
             return
         found = declared(tokens, reading, scope.class_name)
         if found is None:
-            self._lose(self.code[start:at])
+            self._lose(self.code[slice(*self.span)])
             return
         if reading.specialised and not scope.class_name:
             return  # the general template is what is offered
         for one in found:
-            self._emit(one, reading, deprecated, start, at, "")
+            self._emit(one, reading, deprecated, "")
 
-    def _emit(self, one: Declarator, reading: Head, deprecated: str | None, start: int, at: int, macro: str) -> None:
+    def _emit(self, one: Declarator, reading: Head, deprecated: str | None, macro: str) -> None:
         scope = self.scopes[-1]
         kind = one.kind
         traits = one.traits
@@ -430,67 +420,33 @@ class _Reader:
             return
         word = "operator" if one.name.startswith("operator") and not macro else macro or one.name
         self._add(
-            kind,
-            one.name,
-            start,
-            at,
-            type=one.type,
-            parameters=one.parameters,
-            template=reading.template,
-            traits=traits,
-            value=one.value,
-            deprecated=deprecated,
-            macro=macro,
-            at_word=word,
-            friend="friend" in traits,
-        )
+            kind, one.name, traits, deprecated, word, type=one.type, parameters=one.parameters,
+            template=reading.template, value=one.value, macro=macro,
+        )  # fmt: skip
 
     def _add(
-        self,
-        kind: str,
-        name: str,
-        start: int,
-        at: int,
-        type: str = "",
-        parameters=None,
-        template=None,
-        traits: frozenset[str] = frozenset(),
-        value: str = "",
-        deprecated: str | None = None,
-        bases=(),
-        arguments: str = "",
-        macro: str = "",
-        at_word: str = "",
-        whole: bool = False,
-        friend: bool = False,
-    ) -> None:
+        self, kind: str, name: str, traits: frozenset[str] = frozenset(), deprecated: str | None = None,
+        at_word: str = "", whole: bool = False, span: tuple[int, int] | None = None, **more: Any,
+    ) -> None:  # fmt: skip
+        """Notes what is declared. at_word: what stands where it is, its name when left out; whole: the name needs no
+        scopes; more: what an Entity has besides."""
         scope = self.scopes[-1]
         if not name and not whole:
             return
+        friend = "friend" in traits
         access = self.access if scope.class_name and not friend else ""
         if access == "private" and not ("virtual" in traits or "deleted" in traits or kind in _MADE):
             return
-        offset = self._offset(at_word or name, start, at)
-        prefix = scope.around if friend else scope.prefix
+        if deprecated is None and not scope.class_name:
+            deprecated = scope.deprecated
+        offset = self._offset(at_word or name, *(span or self.span))
+        prefix = "" if whole else scope.around if friend else scope.prefix
         self.entities.append(
             Entity(
-                kind,
-                name if whole else prefix + name,
-                self.scanned.place(offset)[0],
-                type,
-                parameters,
-                template,
-                _sorted(traits) if traits else (),
-                access,
-                value,
-                deprecated if deprecated is not None else scope.deprecated if not scope.class_name else None,
-                bases,
-                arguments,
-                scope.internal,
-                macro,
-                conditions_at(self.scanned, offset),
+                kind, prefix + name, self.scanned.place(offset)[0], traits=_sorted(traits), access=access,
+                deprecated=deprecated, internal=scope.internal, conditions=conditions_at(self.scanned, offset), **more,
             )
-        )
+        )  # fmt: skip
 
     def _offset(self, word: str, start: int, at: int) -> int:
         """Where a declaration names what it declares."""
@@ -519,8 +475,6 @@ class _Reader:
     def _lose(self, head: str) -> None:
         self.lost += len(head.strip())
 
-    # Scopes
-
     def _namespace(self, tokens: list[str], at: int, resume: tuple[int, int]) -> None:
         around = self.scopes[-1]
         place = tokens.index("namespace")
@@ -546,17 +500,10 @@ class _Reader:
         self.scopes.append(_Scope(prefix, "", prefix, internal, around.deprecated, resume, at))
 
     def _type(
-        self,
-        reading: Head,
-        found: ClassHead,
-        tail: list[str],
-        start: int,
-        at: int,
-        end: int,
-        resume: tuple[int, int],
+        self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]
     ) -> bool:
         """Opens a class, or reads an enum; whether there is something to be read inside."""
-        scope = self.scopes[-1]
+        scope, at = self.scopes[-1], self.span[1]
         typedef = "typedef" in reading.words
         deprecated = next((word[11:] for word in reading.words if word.startswith("deprecated:")), None)
         if tail and ("DEPRECATED" in " ".join(tail) or "deprecated" in tail):
@@ -571,22 +518,14 @@ class _Reader:
         member = "" if name else next((word for word, _ in others), "")
         traits = found.traits - {"doubtful"}
         if name:
+            arguments = found.arguments if found.arguments or not reading.specialised else ""
             self._add(
-                found.kind,
-                name,
-                start,
-                at,
-                type=found.type,
-                template=reading.template,
-                traits=traits,
-                deprecated=deprecated,
-                bases=found.bases,
-                arguments=found.arguments if found.arguments or not reading.specialised else "",
-                at_word=found.name,
-            )
+                found.kind, name, traits, deprecated, found.name, type=found.type, template=reading.template,
+                bases=found.bases, arguments=arguments,
+            )  # fmt: skip
         for word, stars in others:
             kind = "alias" if typedef else "field" if scope.class_name else "variable"
-            self._add(kind, word, end, resume[0], type=(name or found.kind) + stars, traits=reading.traits)
+            self._add(kind, word, reading.traits, span=(end, resume[0]), type=(name or found.kind) + stars)
         if found.kind == "enum":
             self._enumerators(name, "scoped" in traits, at, end)
             return False
@@ -613,17 +552,11 @@ class _Reader:
             position = offset + len(word)
             self.entities.append(
                 Entity(
-                    "enumerator",
-                    prefix + word,
-                    self.scanned.place(offset)[0],
-                    scope.prefix + name if name else "",
-                    access=self.access if scope.class_name else "",
-                    value=value,
-                    deprecated=deprecated,
-                    internal=scope.internal,
-                    conditions=conditions_at(self.scanned, offset),
+                    "enumerator", prefix + word, self.scanned.place(offset)[0], scope.prefix + name if name else "",
+                    access=self.access if scope.class_name else "", value=value, deprecated=deprecated,
+                    internal=scope.internal, conditions=conditions_at(self.scanned, offset),
                 )
-            )
+            )  # fmt: skip
 
 
 @lru_cache(maxsize=4096)

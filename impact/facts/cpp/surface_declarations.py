@@ -387,14 +387,15 @@ _PLAIN = frozenset(("const", "volatile", "struct", "class", "union", "enum", "ty
 _LATE = frozenset(("static", "inline", "constexpr", "virtual", "friend", "explicit"))
 
 
+def _without_late(tokens: list[str], head: Head) -> tuple[list[str], Head]:
+    """Tokens without specifiers that stand behind a type, and the head with these."""
+    late = head.traits.union(_LATE.intersection(tokens))
+    kept = [token for token in tokens if token not in _LATE]
+    return (kept, head._replace(traits=late)) if len(kept) < len(tokens) else (tokens, head)
+
+
 def _called(
-    rest: list[str],
-    place: int,
-    behind: int,
-    units: list[tuple[int, int]],
-    builtin: bool,
-    head: Head,
-    class_name: str,
+    rest: list[str], place: int, behind: int, units: list[tuple[int, int]], builtin: bool, head: Head, class_name: str
 ) -> list[Declarator] | None:
     """A name with parentheses behind it."""
     start, stop = units[-1]
@@ -433,10 +434,7 @@ def _called(
         return _variables(rest[:start] + rest[behind:], head)  # `int member GUARDED_BY(mutex)`
     if not class_name and _values(group):
         return _variables([*list(rest[:place]), "=", "{", *group, "}", *list(rest[behind:])], head)
-    late = frozenset(token for token in before if token in _LATE)
-    if late:
-        before = [token for token in before if token not in _LATE]
-        head = head._replace(traits=head.traits | late)
+    before, head = _without_late(before, head)
     if "typedef" in head.words:
         type_ = named([*before, name])[0]
         return [Declarator("alias", name, type_ + parameters_text(group))]
@@ -554,11 +552,7 @@ def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: H
     group = rest[stop + 1 : behind - 1]
     if converts:
         return [_function("conversion", name, type_text(rest[place + 1 : stop]), rest, group, behind, head)]
-    before = list(rest[:place])
-    late = frozenset(token for token in before if token in _LATE)
-    if late:
-        before = [token for token in before if token not in _LATE]
-        head = head._replace(traits=head.traits | late)
+    before, head = _without_late(rest[:place], head)
     return [_function("operator", name, named([*before, "x"])[0], rest, group, behind, head)]
 
 
@@ -601,9 +595,7 @@ def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
                     piece = list(cut)
         if number:
             piece = [*base, *piece]
-        late = [token for token in piece if token in _LATE]
-        if late:
-            piece = [token for token in piece if token not in _LATE]
+        piece, own = _without_late(piece, head)
         type_, name = named(piece)
         if not name:
             if any(token == "::" for token in piece[-3:]) or not piece:
@@ -615,7 +607,7 @@ def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
                 if token == name or token in _POINTERS:
                     break
                 base.append(token)
-        traits = head.traits | frozenset(late)
+        traits = own.traits
         if type_.endswith(" const") or (type_.startswith("const ") and "*" not in type_ and "&" not in type_):
             traits = traits | {"const"}
         kind = "alias" if "typedef" in head.words else "variable"

@@ -8,13 +8,12 @@ from collections.abc import Iterator
 
 from ..condition import Condition
 from ..surface import CppParameter, Entity
-from . import Scan
+from .lexical import Directive, Scan, blanked, conditional_blocks
 from .surface_types import arguments_of, tokens_of
 
 HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
 """Comments and literals."""
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(\w*)([^\n]*(?:(?<=\\)\n[^\n]*)*)", re.MULTILINE)
-_NOT_NEWLINE = re.compile(r"[^\n]+")
 _DEFINE = re.compile(r"\s*([^\W\d]\w*)(\([^()]*\))?(.*)", re.DOTALL)
 _LITERAL = re.compile(r"\(?\s*([-+]?(?:0[xX][\da-fA-F]+|\d[\d.]*(?:[eE][-+]?\d+)?)[uUlLfF]*|\"[^\"\n]{0,60}\")\s*\)?\Z")
 _GONE = re.compile(r"deprecat|obsolete|has moved|been moved|been renamed|instead", re.IGNORECASE)
@@ -30,40 +29,22 @@ def without_directives(scanned: Scan) -> tuple[str, list[Entity]]:
     if "#" not in visible:
         return visible, []
     gone: list[tuple[int, int]] = []
-    opened: list[list[tuple[int, int, str, str]]] = []
     undefined: set[str] = set()
     defines: list[tuple[int, int, str]] = []
+    directives: list[Directive] = []
     for match in _DIRECTIVE.finditer(visible):
         start, end = match.span()
-        word = match[1]
         gone.append((start, end))
-        if word == "define":
+        if match[1] == "define":
             defines.append((start, end, match[2]))
-        elif word == "undef":
+        elif match[1] == "undef":
             undefined.add(match[2].strip())
-        elif word in ("if", "ifdef", "ifndef"):
-            opened.append([(start, end, word, match[2].strip())])
-        elif opened and word in ("else", "elif", "elifdef", "elifndef"):
-            opened[-1].append((start, end, word, match[2].strip()))
-        elif opened and word == "endif":
-            branches = opened.pop()
-            if len(branches) > 1 or branches[0][3] == "0":
-                gone += _cut(visible, [*branches, (start, end, word, "")])
-    gone.sort()
-    pieces: list[str] = []
-    position = 0
-    for start, end in gone:
-        if end <= position:
-            continue
-        start = max(start, position)
-        hidden = visible[start:end]
-        pieces += [
-            visible[position:start],
-            _NOT_NEWLINE.sub(_spaces, hidden) if "\n" in hidden else " " * len(hidden),
-        ]
-        position = end
-    pieces.append(visible[position:])
-    return "".join(pieces), list(_macros(scanned, defines, undefined))
+        else:
+            directives.append((start, end, match[1], match[2].strip()))
+    for branches in conditional_blocks(directives):
+        if len(branches) > 2 or branches[0][3] == "0":
+            gone += _cut(visible, branches)
+    return blanked(visible, sorted(gone)), list(_macros(scanned, defines, undefined))
 
 
 def _macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: set[str]) -> Iterator[Entity]:
@@ -126,16 +107,12 @@ def conditions_at(scanned: Scan, offset: int) -> tuple[Condition, ...]:
     return segments[min(bisect_right(scanned.ends, offset), len(segments) - 1)][2]
 
 
-def _spaces(match: re.Match[str]) -> str:
-    return " " * (match.end() - match.start())
-
-
 def _kept(match: re.Match[str]) -> str:
     """Literals stay, comments go."""
     return " " if match[0][0] == "/" else match[0]
 
 
-def _cut(visible: str, branches: list[tuple[int, int, str, str]]) -> list[tuple[int, int]]:
+def _cut(visible: str, branches: list[Directive]) -> list[tuple[int, int]]:
     """Of branches that cut through a declaration, all but one are left out; so is what stands under `#if 0`."""
     bodies = [(branches[number][1], branches[number + 1][0]) for number in range(len(branches) - 1)]
     never = 0 if branches[0][3] == "0" and branches[0][2] == "if" else -1

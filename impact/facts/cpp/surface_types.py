@@ -161,7 +161,7 @@ def _type_text(tokens: tuple[str, ...]) -> str:
             if behind == 0:
                 base.append(token)
             else:
-                base.append("<" + ", ".join(map(_argument_text, split(tokens[place + 1 : behind - 1]))) + ">")
+                base.append("<" + ", ".join(map(type_text, split(tokens[place + 1 : behind - 1]))) + ">")
                 place = behind
                 continue
         elif token in _POINTERS:
@@ -197,10 +197,6 @@ def _type_text(tokens: tuple[str, ...]) -> str:
     return front + "".join(base) + "".join(tail)
 
 
-def _argument_text(tokens: Sequence[str]) -> str:
-    return type_text(tokens) if tokens else ""
-
-
 def parameters_text(tokens: Sequence[str]) -> str:
     """What stands in the parentheses of a function type, names of parameters left out."""
     pieces = split(tokens)
@@ -218,14 +214,10 @@ def arguments_of(tokens: Sequence[str]) -> tuple[tuple[CppParameter, ...], bool]
     last = pieces[-1]
     if last and last[-1] == "..." and (len(last) == 1 or (last[-2] not in ("&", "&&", "*") and len(last) > 2)):
         # `(int a, ...)` and `(int a ...)`
-        variadic = len(last) == 1 or _is_named(last[:-1])
+        variadic = len(last) == 1 or named(last[:-1])[1] != ""
         if variadic:
             pieces[-1] = last[:-1]
     return tuple(argument(piece) for piece in pieces if piece), variadic
-
-
-def _is_named(tokens: Sequence[str]) -> bool:
-    return bool(named(tokens)[1])
 
 
 def argument(tokens: Sequence[str]) -> CppParameter:

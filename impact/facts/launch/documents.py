@@ -19,7 +19,7 @@ def read_document(data: bytes, kind: str) -> Document:
     body = dict(root.value).get("launch") if root is not None and root.kind == "map" else None
     elements: list[Element] = []
     if body is not None:
-        elements.append(Element("launch", (), body.offset, -1))
+        elements.append(Element("launch", (), body.offset, -1, body.offset))
         _add_listed(body, elements, 0)
         if len(elements) >= MOST_ENTRIES:
             problems.append(Problem(1, f"has more than {MOST_ENTRIES} elements"))
@@ -37,7 +37,7 @@ def _add(tag: str, body: YamlNode, elements: list[Element], parent: int) -> None
     """Adds an element and all below it."""
     if len(elements) >= MOST_ENTRIES:  # a node may stand in many places
         return
-    element = Element(tag, (), body.offset, parent)
+    element = Element(tag, (), body.offset, parent, body.offset)
     place = len(elements)
     elements.append(element)
     if body.kind == "list":

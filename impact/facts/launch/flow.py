@@ -7,7 +7,8 @@ values are sequences of pieces.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+
+import msgspec
 
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
@@ -29,8 +30,6 @@ def extract(data: bytes, kind: str) -> LaunchFile:
     except RecursionError:
         return LaunchFile(kind.removeprefix("launch_"), 0, (), (Problem(1, "nested too deeply to be read"),))
 
-
-# Substitutions
 
 _ROS1 = re.compile(r"\$\(([^$()]*)\)")
 
@@ -157,54 +156,44 @@ def _ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
         return named(_ROS2_NAMED[verb], *args)
     if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
         return named(_ROS2_PLACES.get(verb, verb), args[0])
-    if verb == "exec-in-pkg" and len(args) == 2:
-        return ValuePart("executable", "", tuple(args))
-    if verb in ("dirname", "filename") and not args:
-        return ValuePart(verb)
     if verb == "eval" and args:
         return ValuePart("eval", "launch", (spaced(args),))
-    if verb == "file-content" and len(args) == 1:
-        return ValuePart("content", "", (args[0],))
     if verb == "command" and args:
         return ValuePart("command", "", (args[0],))
-    if verb in ("equals", "not-equals") and len(args) == 2:
-        same = ValuePart("equals", "", tuple(args))
-        return same if verb == "equals" else ValuePart("not", "", ((same,),))
-    if verb == "not" and len(args) == 1:
-        return ValuePart("not", "", (args[0],))
-    if verb in ("and", "or", "any", "all"):
-        return ValuePart({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
-    if verb == "if" and 2 <= len(args) <= 3:
-        return ValuePart("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
-    return other(source)
+    if verb == "not-equals" and len(args) == 2:
+        return ValuePart("not", "", ((ValuePart("equals", "", tuple(args)),),))
+    if verb == "if" and len(args) == 2:
+        args = [*args, literal("")]
+    kind, numbers = _ROS2_PIECES.get(verb, ("", ()))
+    return ValuePart(kind, "", tuple(args)) if numbers is None or len(args) in numbers else other(source)
 
 
 _ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
 _ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
+# What others are here, and how many arguments they take; None for any number.
+_ROS2_PIECES: dict[str, tuple[str, tuple[int, ...] | None]] = {
+    "exec-in-pkg": ("executable", (2,)), "dirname": ("dirname", (0,)), "filename": ("filename", (0,)),
+    "file-content": ("content", (1,)), "equals": ("equals", (2,)), "not": ("not", (1,)), "if": ("choose", (3,)),
+    "and": ("and", None), "all": ("and", None), "or": ("or", None), "any": ("or", None),
+}  # fmt: skip
 
 
-def spaced(values: list[Value]) -> Value:
-    """Values as one, blanks between them."""
-    parts: list[Value] = []
-    for value in values:
-        parts += (*([literal(" ")] if parts else ()), value)
-    return together(parts)
+def spaced(values: list[Value], separator: str = " ") -> Value:
+    """Values as one, with a separator between them."""
+    return together([part for value in values for part in (literal(separator), value)][1:])
 
 
 # XML and YAML as one kind of tree
 
 
-class _Entity:
+class _Entity(msgspec.Struct, eq=False):
     """An element of a launch file. attributes: the values as written, a list where YAML has one."""
 
-    __slots__ = ("attributes", "children", "line", "tag", "text")
-
-    def __init__(self, tag: str, line: int):
-        self.tag = tag
-        self.line = line
-        self.attributes: dict[str, str | list[str]] = {}
-        self.children: list[_Entity] = []
-        self.text = ""
+    tag: str
+    line: int
+    attributes: dict[str, str | list[str]] = {}
+    children: list[_Entity] = []
+    text: str = ""
 
 
 def _launch(data: bytes, kind: str) -> LaunchFile:
@@ -353,7 +342,7 @@ class _Reader:
 
     def value(self, text: str | list[str]) -> Value:
         if isinstance(text, list):
-            return together([literal("["), *_commas([self.value(item) for item in text]), literal("]")])
+            return together([literal("["), spaced([self.value(item) for item in text], ", "), literal("]")])
         return substitutions(text, self.generation)
 
     def action(self, entity: _Entity, inside: str) -> list[Action]:
@@ -433,13 +422,6 @@ class _Reader:
             return found
         attributes = [(key, together([*above, value]) if key == "name" else value) for key, value in attributes]
         return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
-
-
-def _commas(values: list[Value]) -> Iterator[Value]:
-    for place, value in enumerate(values):
-        if place:
-            yield literal(", ")
-        yield value
 
 
 def words(value: Value) -> list[Value]:

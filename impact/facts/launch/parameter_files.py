@@ -32,18 +32,15 @@ DEEPEST = 60
 MOST_ENTRIES = 50_000
 
 
-class YamlNode:
+class YamlNode(msgspec.Struct, eq=False):
     """A node of a YAML file. value: a scalar's value, the items of a list, or the (key, node) pairs of a mapping. line,
     offset: where a scalar begins behind its quote; of a block the place of its key."""
 
-    __slots__ = ("height", "kind", "line", "offset", "value")
-
-    def __init__(self, kind: str, value: Any, line: int, offset: int = 0):
-        self.kind = kind
-        self.value = value
-        self.line = line
-        self.offset = offset
-        self.height = 0
+    kind: str
+    value: Any
+    line: int
+    offset: int = 0
+    height: int = 0
 
 
 _BOOLEAN = {word: flag for flag, stems in ((True, ("true", "yes", "on")), (False, ("false", "no", "off")))

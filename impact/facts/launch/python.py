@@ -111,8 +111,6 @@ class Walker:
             result = result.items[0]
         return tuple(self.actions(result, entry.node.lineno)), ()
 
-    # Statements
-
     def block(self, statements: Sequence[ast.stmt]) -> bool:
         """Walks statements; True when none that follows them can run."""
         added = 0
@@ -192,13 +190,10 @@ class Walker:
         self.returns.append((tuple(self.conditions[self.base :]), value))
         return True
 
-    def run_Raise(self, statement: ast.Raise) -> bool:
-        return True
-
     def run_Break(self, statement: ast.stmt) -> bool:
         return True
 
-    run_Continue = run_Break
+    run_Continue = run_Raise = run_Break
 
     def run_If(self, statement: ast.If) -> bool | ActionCondition | None:
         decided = self.truth(statement.test)
@@ -278,7 +273,7 @@ class Walker:
     run_AsyncFunctionDef = run_FunctionDef
 
     def run_ClassDef(self, statement: ast.ClassDef) -> None:
-        type_ = LaunchClass(statement.name, self.scope)
+        type_ = LaunchClass()
         for inner in statement.body:
             if isinstance(inner, (ast.FunctionDef, ast.AsyncFunctionDef)):
                 type_.methods[inner.name] = LaunchFunction(inner, self.scope)
@@ -295,8 +290,6 @@ class Walker:
     def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
         for alias in statement.names:
             self.scope.names[alias.asname or alias.name] = LaunchModule(f"{statement.module or ''}.{alias.name}")
-
-    # Conditions
 
     def truth(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
@@ -369,8 +362,6 @@ class Walker:
         if isinstance(left, Unknown) or isinstance(right, Unknown):
             return None
         return False
-
-    # Expressions
 
     def value(self, node: ast.expr) -> Any:
         self.spend(1)
@@ -603,11 +594,7 @@ class Walker:
             del self.conditions[depth:]
         return Pairs(made, depth) if isinstance(node, ast.DictComp) else Items(made, depth)
 
-    value_GeneratorExp = value_ListComp
-    value_SetComp = value_ListComp
-    value_DictComp = value_ListComp
-
-    # Lists under conditions
+    value_GeneratorExp = value_SetComp = value_DictComp = value_ListComp
 
     def guarded(self, value: Any, depth: int) -> Any:
         return guarded_by(value, tuple(self.conditions[depth:]))
@@ -617,8 +604,6 @@ class Walker:
             holder.items.append(self.guarded(item, holder.depth))
             if len(holder.items) > MOST_STEPS:
                 raise TooMuch(STEPS)
-
-    # Calls
 
     def value_Call(self, node: ast.Call) -> Any:
         function = self.value(node.func)
@@ -810,8 +795,6 @@ class Walker:
         except ValueError:
             return Unknown(source_of(node))
         return TextValue(together(values))
-
-    # Values as facts
 
     def spend(self, steps: int) -> None:
         """Counts steps; raises TooMuch when there have been too many."""

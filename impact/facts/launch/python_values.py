@@ -6,6 +6,8 @@ import ast
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+import msgspec
+
 from ..python.text import ARITHMETIC, COMPARISONS
 from .actions import ActionCondition, Value, ValuePart, literal
 
@@ -95,29 +97,23 @@ class LaunchFunction(NamedTuple):
     self: Any = None
 
 
-class Items:
+class Items(msgspec.Struct, eq=False):
     """A list, or as kind says a tuple or a LaunchDescription. depth: how many conditions stood when it was made."""
 
-    __slots__ = ("depth", "items", "kind")
-
-    def __init__(self, items: list[Any], depth: int, kind: str = "list"):
-        self.items = items
-        self.depth = depth
-        self.kind = kind
+    items: list[Any]
+    depth: int
+    kind: str = "list"
 
     @property
     def is_launch(self) -> bool:
         return self.kind == "launch"
 
 
-class Pairs:
+class Pairs(msgspec.Struct, eq=False):
     """A dict, as pairs; a later pair of the same key replaces the earlier."""
 
-    __slots__ = ("depth", "items")
-
-    def __init__(self, items: list[tuple[Any, Any]], depth: int):
-        self.items = items
-        self.depth = depth
+    items: list[tuple[Any, Any]]
+    depth: int
 
     def get(self, key: Any) -> Any:
         return next((value for known, value in reversed(self.items) if known == key), None)
@@ -130,43 +126,29 @@ class Pairs:
         self.items.append((key, value))
 
 
-class LaunchClass:
+class LaunchClass(msgspec.Struct, eq=False):
     """A class of the file."""
 
-    __slots__ = ("methods", "name", "scope")
-
-    def __init__(self, name: str, scope: LaunchScope):
-        self.name = name
-        self.scope = scope
-        self.methods: dict[str, Any] = {}
+    methods: dict[str, Any] = {}
 
 
-class Object:
+class Object(msgspec.Struct, eq=False):
     """An object of a class of the file."""
 
-    __slots__ = ("attributes", "type")
-
-    def __init__(self, type_: LaunchClass):
-        self.type = type_
-        self.attributes: dict[str, Any] = {}
+    type: LaunchClass
+    attributes: dict[str, Any] = {}
 
 
-class LaunchScope:
+class LaunchScope(msgspec.Struct, eq=False):
     """Names and what they stand for."""
 
-    __slots__ = ("names", "parent")
-
-    def __init__(self, parent: LaunchScope | None):
-        self.parent = parent
-        self.names: dict[str, Any] = {}
+    parent: LaunchScope | None
+    names: dict[str, Any] = {}
 
     def look(self, name: str) -> Any:
-        scope: LaunchScope | None = self
-        while scope is not None:
-            if name in scope.names:
-                return scope.names[name]
-            scope = scope.parent
-        return None
+        if name in self.names or self.parent is None:
+            return self.names.get(name)
+        return self.parent.look(name)
 
 
 class Context(NamedTuple):

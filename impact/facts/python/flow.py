@@ -94,8 +94,6 @@ class PythonStatements(Expressions):
                 for name in sorted(body.captured):
                     body.outer.captures(name, body)
 
-    # Blocks
-
     def block(self, statements: list[ast.stmt]) -> Leaving:
         """Reads statements; gives how control leaves them."""
         saved = self.guard
@@ -328,8 +326,6 @@ class PythonStatements(Expressions):
                 value = subject if node is pattern else FlowExpr("index", "", (subject, ANY))
                 self.bind(ast.Name(name, ast.Store()), value, line)
 
-    # Jumps
-
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
             value = self.value(node.value, "escape", target="return")
@@ -357,8 +353,6 @@ class PythonStatements(Expressions):
         if node.msg is not None:
             self.visit(node.msg)
         return (HoldingCondition("if", self.source(node.test), node.lineno),)
-
-    # Plain statements
 
     def read_Expr(self, node: ast.Expr) -> Leaving:
         value = node.value
@@ -467,8 +461,6 @@ class PythonStatements(Expressions):
                 self.aliases.append(Alias(alias.asname or alias.name, f"{module}{dot}{alias.name}", scope))
         return STAYS
 
-    # Definitions
-
     def decorators(self, node) -> tuple[str, ...]:
         found: list[str] = []
         for decorator in node.decorator_list:
@@ -511,7 +503,8 @@ class PythonStatements(Expressions):
             bases.append(self.source(base))
         for keyword in node.keywords:
             self.visit(keyword.value)
-        cls = ClassBody(name, tuple(bases), node)
+        last = node.end_lineno or node.lineno
+        cls = ClassBody(name, tuple(bases), node.lineno, last)
         for base in bases:
             if base in self.class_bodies:
                 cls.callbacks |= self.class_bodies[base].callbacks
@@ -523,7 +516,7 @@ class PythonStatements(Expressions):
         self.classes.append(cls)
         self.class_bodies[name] = cls
         around = outer.outer if outer.is_class else outer
-        body = Body(name, cls, node.lineno, node.end_lineno or node.lineno, around if around and around.name else None)
+        body = Body(name, cls, node.lineno, last, around if around and around.name else None)
         body.is_class = True
         body.made = saved
         self.bodies.append(body)

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import ast
+import msgspec
 
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowClass, FlowExpr, FlowFunction, FlowParameter, Guard
 
 
-class ClassBody:
+class ClassBody(msgspec.Struct, eq=False):
     """A class while it is read. methods: all it declares; callbacks: those that a name refers to without calling, which
     leaves properties out, with those of its bases in the same file."""
 
-    def __init__(self, name: str, bases: tuple[str, ...], node: ast.ClassDef) -> None:
-        self.name = name
-        self.bases = bases
-        self.line = node.lineno
-        self.end = node.end_lineno or node.lineno
-        self.methods: list[str] = []
-        self.callbacks: set[str] = set()
-        self.members: dict[str, DataMember] = {}
+    name: str
+    bases: tuple[str, ...]
+    line: int
+    end: int
+    methods: list[str] = []
+    callbacks: set[str] = set()
+    members: dict[str, DataMember] = {}
 
     def member(self, name: str, type: str, line: int, value: FlowExpr | None) -> None:
         """Keeps the first mention of a member that tells its type, else the first."""
@@ -31,37 +30,30 @@ class ClassBody:
         return FlowClass(self.name, self.bases, members, tuple(self.methods), self.line, self.end)
 
 
-class Body:
+class Body(msgspec.Struct, eq=False):
     """A function while it is read. this: the name by which it knows its object, empty for none. outer: the function
-    around it whose variables it sees. made: guard under which it is defined in outer."""
+    around it whose variables it sees. made: guard under which it is defined in outer. outside: names declared global or
+    nonlocal."""
 
-    __slots__ = (
-        *("accesses", "assignments", "calls", "captured", "cls", "decorators", "end", "functions", "guards"),
-        *("is_class", "line", "locals", "made", "name", "outer", "outside", "owner", "parameters", "returns", "this"),
-    )
-
-    def __init__(self, name: str, cls: ClassBody | None, line: int, end: int, outer: Body | None = None) -> None:
-        self.name = name
-        self.cls = cls
-        self.owner = cls.name if cls is not None else ""
-        self.line = line
-        self.end = end
-        self.outer = outer
-        self.made = -1
-        self.is_class = False
-        self.this = ""
-        self.parameters: tuple[FlowParameter, ...] = ()
-        self.decorators: tuple[str, ...] = ()
-        self.returns = ""
-        self.locals: set[str] = set()
-        # Names declared global or nonlocal.
-        self.outside: dict[str, type] = {}
-        self.functions: set[str] = set()
-        self.captured: set[str] = set()
-        self.guards: list[Guard] = []
-        self.calls: list[FlowCall] = []
-        self.assignments: list[Assignment] = []
-        self.accesses: list[Access] = []
+    name: str
+    cls: ClassBody | None
+    line: int
+    end: int
+    outer: Body | None = None
+    made: int = -1
+    is_class: bool = False
+    this: str = ""
+    parameters: tuple[FlowParameter, ...] = ()
+    decorators: tuple[str, ...] = ()
+    returns: str = ""
+    locals: set[str] = set()
+    outside: dict[str, type] = {}
+    functions: set[str] = set()
+    captured: set[str] = set()
+    guards: list[Guard] = []
+    calls: list[FlowCall] = []
+    assignments: list[Assignment] = []
+    accesses: list[Access] = []
 
     def sees(self, name: str) -> bool:
         """Whether a function around this one has such a variable; it is then captured by all between."""
@@ -86,17 +78,8 @@ class Body:
         return not self.is_class or bool(self.calls or self.assignments or self.guards)
 
     def finished(self) -> FlowFunction:
+        owner = self.cls.name if self.cls is not None else ""
         return FlowFunction(
-            self.name,
-            self.owner,
-            self.parameters,
-            self.line,
-            self.end,
-            tuple(self.guards),
-            tuple(self.calls),
-            tuple(self.assignments),
-            tuple(self.accesses),
-            self.decorators,
-            self.returns,
-            outside=tuple(self.outside),
-        )
+            self.name, owner, self.parameters, self.line, self.end, tuple(self.guards), tuple(self.calls),
+            tuple(self.assignments), tuple(self.accesses), self.decorators, self.returns, outside=tuple(self.outside),
+        )  # fmt: skip

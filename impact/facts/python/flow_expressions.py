@@ -80,8 +80,6 @@ class Expressions(SourceText):
         self.guards.append(Guard(kind, text, line, self.guard, early))
         self.guard = len(self.guards) - 1
 
-    # Names
-
     def sees(self, name: str) -> bool:
         return self.body.outer is not None and self.body.sees(name)
 
@@ -106,8 +104,6 @@ class Expressions(SourceText):
             inner = self.spelt(node.value)
             return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
         return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
-
-    # Plain values
 
     def member(self, path: str, name: str) -> FlowExpr:
         cls = self.body.cls
@@ -181,24 +177,11 @@ class Expressions(SourceText):
         if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
             del self.guards[count:]
 
-    def visit_IfExp(self, node: ast.IfExp) -> None:
+    def visit_IfExp(self, node) -> None:
         self.value(node, "read")
 
-    def visit_Lambda(self, node: ast.Lambda) -> None:
-        self.value_Lambda(node, "")
-
-    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
-        self.value_NamedExpr(node, "read")
-
-    def visit_ListComp(self, node) -> None:
-        self.value_ListComp(node, "")
-
-    visit_SetComp = visit_ListComp
-    visit_GeneratorExp = visit_ListComp
-    visit_DictComp = visit_ListComp
-
-    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        self.value_JoinedStr(node, "read")
+    visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
+    visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_IfExp
 
     def visit_Call(self, node: ast.Call) -> None:
         self.call(node)
@@ -208,8 +191,6 @@ class Expressions(SourceText):
             self.value(node.value, "escape")
 
     visit_YieldFrom = visit_Yield
-
-    # Paths
 
     def reach(self, node) -> tuple[str, bool]:
         """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
@@ -249,8 +230,6 @@ class Expressions(SourceText):
         parts.append(head)
         parts.reverse()
         return ".".join(parts), local
-
-    # Values
 
     def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> FlowExpr:
         """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
@@ -367,8 +346,7 @@ class Expressions(SourceText):
             return FlowExpr("list", "", tuple(kept))
         return FlowExpr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
 
-    value_List = value_Tuple
-    value_Set = value_Tuple
+    value_List = value_Set = value_Tuple
 
     def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
@@ -438,9 +416,7 @@ class Expressions(SourceText):
             found.append(FlowParameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
         return tuple(found)
 
-    def value_ListComp(
-        self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
-    ) -> FlowExpr:
+    def value_ListComp(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
@@ -457,9 +433,7 @@ class Expressions(SourceText):
         self.guard, self.in_class = saved, in_class
         return FlowExpr("other", self.other(node).text, (each,))
 
-    value_SetComp = value_ListComp
-    value_GeneratorExp = value_ListComp
-    value_DictComp = value_ListComp
+    value_SetComp = value_GeneratorExp = value_DictComp = value_ListComp
 
     def walked(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
@@ -489,8 +463,6 @@ class Expressions(SourceText):
                 if name in ("zip", "izip"):
                     return FlowExpr("list", "each", tuple(self.elements(argument) for argument in arguments))
         return self.value(node, "read")
-
-    # Binding
 
     def bind(self, target, value: FlowExpr, line: int, type: str = "", operator: str = "=") -> None:
         """An assignment of a value, already read, to a name, a member, an element or several of them."""
@@ -646,8 +618,6 @@ class Expressions(SourceText):
         if not parts:
             return FlowExpr("text", "")
         return parts[0] if len(parts) == 1 and parts[0].kind == "text" else FlowExpr("join", "", tuple(parts))
-
-    # Calls
 
     def called(self, node: ast.Call, target: str = "") -> FlowExpr:
         """A call as a value."""

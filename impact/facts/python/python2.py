@@ -32,8 +32,21 @@ _UNEQUAL = re.compile(r"<>")
 _OCTAL = re.compile(r"(?<![\w.])(0+)(?=[1-9][0-9]*(?![\w.]))")
 _LONG = re.compile(r"(?<![\w.])(?:0[xX][0-9a-fA-F]+|[0-9]+)([lL])\b")
 _UNICODE_RAW = re.compile(r"\b([uU])[rR](?=[\"'])")
-_BACKTICK = re.compile(r"`[^`\n]*`")
+_BACKTICK = re.compile(r"(`)[^`\n]*(`)")
 _TUPLE_PARAMETER = re.compile(r"\bdef[ \t]+\w+[ \t]*\((?:[\w \t\n,]*,)?\s*(\([\w \t\n,]*\))")
+# What to look for, what it is called (empty: what was found), and what to write for its groups (0: for all of it).
+_REWRITES: tuple[tuple[re.Pattern[str], str, dict[int, str]], ...] = (
+    (_PRINT, "print statement", {1: "0,", 2: ""}),
+    (_EXCEPT, "", {1: ""}),
+    (_EXEC, "exec statement", {1: "0,"}),
+    (_RAISE, '`raise E, "message"`', {1: "0,"}),
+    (_UNEQUAL, "`<>`", {0: "!="}),
+    (_OCTAL, "octal number without 0o", {1: ""}),
+    (_LONG, "long integer", {1: ""}),
+    (_UNICODE_RAW, "ur string", {1: ""}),
+    (_BACKTICK, "backticks", {1: "(", 2: ")"}),
+    (_TUPLE_PARAMETER, "tuple parameter", {1: "_" * 1000}),
+)
 # Names that Python 3 made keywords; `async` and `await` only with 3.7.
 _KEYWORD_NAME = re.compile(
     r"(?<=\.)(None|True|False|async|await)\b|(?<![\w.])(async|await)(?=[ \t]*(?:[.,)\]]|=(?!=)))"
@@ -69,48 +82,20 @@ def find(text: str) -> tuple[tuple[Problem, ...], str]:
     edits: list[tuple[int, int, str]] = []
     hits: list[tuple[int, str]] = []
 
-    def replace(start: int, end: int, by: str) -> None:
-        edits.append((start, end, by.ljust(end - start)[: end - start]))
+    def replace(match: re.Match[str], group: int, by: str) -> None:
+        start, end = match.span(group)
+        if start >= 0 and "\n" not in match.group(group):  # lines stay
+            edits.append((start, end, by.ljust(end - start)[: end - start]))
 
-    for match in _PRINT.finditer(visible):
-        hits.append((match.start(1), "print statement"))
-        replace(match.start(1), match.end(1), "0,")
-        if match.group(2):
-            replace(match.start(2), match.end(2), "")
-    for match in _EXCEPT.finditer(visible):
-        hits.append((match.start(), f"`{' '.join(match.group().rstrip(': ').split())}`"))
-        replace(match.start(1), match.end(1), "")
-    for match in _EXEC.finditer(visible):
-        hits.append((match.start(1), "exec statement"))
-        replace(match.start(1), match.end(1), "0,")
-    for match in _RAISE.finditer(visible):
-        hits.append((match.start(1), '`raise E, "message"`'))
-        replace(match.start(1), match.end(1), "0,")
-    for match in _UNEQUAL.finditer(visible):
-        hits.append((match.start(), "`<>`"))
-        replace(match.start(), match.end(), "!=")
-    for match in _OCTAL.finditer(visible):
-        hits.append((match.start(), "octal number without 0o"))
-        replace(match.start(1), match.end(1), "")
-    for match in _LONG.finditer(visible):
-        hits.append((match.start(), "long integer"))
-        replace(match.start(1), match.end(1), "")
-    for match in _UNICODE_RAW.finditer(visible):
-        hits.append((match.start(), "ur string"))
-        replace(match.start(1), match.end(1), "")
-    for match in _BACKTICK.finditer(visible):
-        hits.append((match.start(), "backticks"))
-        replace(match.start(), match.start() + 1, "(")
-        replace(match.end() - 1, match.end(), ")")
-    for match in _TUPLE_PARAMETER.finditer(visible):
-        hits.append((match.start(), "tuple parameter"))
-        name = "_" * (match.end(1) - match.start(1))
-        if "\n" not in match.group(1):
-            replace(match.start(1), match.end(1), name)
+    for pattern, what, groups in _REWRITES:
+        for match in pattern.finditer(visible):
+            hits.append((match.start(), what or f"`{' '.join(match.group().rstrip(': ').split())}`"))
+            for group, by in groups.items():
+                replace(match, group, by)
     for match in _KEYWORD_NAME.finditer(visible):
         group = match.lastindex or 0
         hits.append((match.start(group), f"`{match.group(group)}` as a name"))
-        replace(match.start(group), match.end(group), match.group(group)[:-1] + "_")
+        replace(match, group, match.group(group)[:-1] + "_")
 
     pieces: list[str] = []
     position = 0

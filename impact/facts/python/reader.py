@@ -50,26 +50,20 @@ _ABOUT_MACHINE = re.compile(
     r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
     re.IGNORECASE,
 )
-_COMMAND_CALLS = frozenset(
-    (
-        "system",
-        "popen",
-        "Popen",
-        "call",
-        "check_call",
-        "check_output",
-        "run",
-        "getoutput",
-        "ExecuteProcess",
-        "ExecuteLocal",
-        "Command",
-    )
-)
+_COMMAND_CALLS = frozenset((
+    "system", "popen", "Popen", "call", "check_call", "check_output", "run", "getoutput", "ExecuteProcess",
+    "ExecuteLocal", "Command",
+))  # fmt: skip
 _PROGRAM = re.compile(r"[A-Za-z_][\w.+-]*")
 _IN_STRING = re.compile(
     r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"
     r"|\$\((?:find|find-pkg-share|find-pkg-prefix)\s+(?P<find>[A-Za-z][\w-]*)\)(?P<find_path>/[^\s'\"<>$%{}()]+)?"
 )
+# What statements and expressions need that are read like any other: the minor version of Python 3, and what it is.
+_NEEDED = {
+    "TemplateStr": (14, "t-string"), "TypeAlias": (12, "type alias statement"), "Nonlocal": (0, "nonlocal"),
+    "YieldFrom": (3, "yield from"),
+}  # fmt: skip
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
 _CHILDREN = child_fields(
@@ -110,8 +104,6 @@ class PythonReader(ObjectUses, SourceText):
         self.block(tree.body)
         self.looked_up_by_functions()
 
-    # Walking
-
     def block(self, nodes) -> None:
         handlers = _HANDLERS
         for node in nodes:
@@ -150,8 +142,7 @@ class PythonReader(ObjectUses, SourceText):
     def visit_Pass(self, node) -> None:
         pass
 
-    visit_Break = visit_Pass
-    visit_Continue = visit_Pass
+    visit_Break = visit_Continue = visit_Pass
 
     def column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
@@ -160,11 +151,9 @@ class PythonReader(ObjectUses, SourceText):
         column = super().column(line, offset)
         return max(1, column - len(self.lines[line - 1]) + len(self.original[line - 1])) if self.original else column
 
-    def need(self, minor: int, node, reason: str) -> None:
+    def need(self, minor: int, reason: str, node) -> None:
         if self.needs is None or minor > self.needs[0]:
             self.needs = (minor, node.lineno, reason)
-
-    # Names
 
     def visit_Name(self, node: ast.Name) -> None:
         if node.ctx.__class__ is ast.Store:
@@ -268,8 +257,6 @@ class PythonReader(ObjectUses, SourceText):
                     AttributeUse(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
 
-    # Conditions
-
     def under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
         """Visits statements with one more condition for imports and one for uses."""
         before = self.conditions, self.use_conditions, self.conditional
@@ -303,8 +290,7 @@ class PythonReader(ObjectUses, SourceText):
         self.branch(node.orelse)
         self.merge(first)
 
-    visit_AsyncFor = visit_For
-    visit_While = visit_For
+    visit_AsyncFor = visit_While = visit_For
 
     def bind_element(self, target, over) -> None:
         """The variable of a loop, which holds an element of what is walked through."""
@@ -323,9 +309,7 @@ class PythonReader(ObjectUses, SourceText):
         self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
         self.scope = outer
 
-    visit_SetComp = visit_ListComp
-    visit_GeneratorExp = visit_ListComp
-    visit_DictComp = visit_ListComp
+    visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_ListComp
 
     def visit_If(self, node: ast.If) -> None:
         test = self.source(node.test)
@@ -394,7 +378,7 @@ class PythonReader(ObjectUses, SourceText):
         self.block(node.finalbody)
 
     def visit_TryStar(self, node) -> None:
-        self.need(11, node, "`except*`")
+        self.need(11, "`except*`", node)
         self.visit_Try(node)
 
     def visit_With(self, node) -> None:
@@ -407,7 +391,7 @@ class PythonReader(ObjectUses, SourceText):
             if item.optional_vars is not None:
                 self.visit(item.optional_vars)
         if self.parenthesised(node):
-            self.need(9, node, "parenthesised context managers")
+            self.need(9, "parenthesised context managers", node)
         if suppressed:
             self.under(node.body, TRY, TRY)
             self.merge(len(self.ways) - 1, self.scope.objects)
@@ -436,23 +420,21 @@ class PythonReader(ObjectUses, SourceText):
     def line_bytes(self, line: int) -> bytes:
         return self.lines[line - 1].encode("utf-8", "replace")
 
-    # Definitions
-
     def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
         for decorator in node.decorator_list:
             self.visit(decorator)
         arguments = node.args
         if arguments.posonlyargs:
-            self.need(8, node, "positional-only parameters")
+            self.need(8, "positional-only parameters", node)
         elif arguments.kwonlyargs:
-            self.need(0, node, "keyword-only parameters")
+            self.need(0, "keyword-only parameters", node)
         if getattr(node, "type_params", None):
-            self.need(12, node, "type parameters")
+            self.need(12, "type parameters", node)
             self.block(node.type_params)
         self.arguments(arguments)
         if node.returns is not None:
-            self.need(0, node, "annotations")
+            self.need(0, "annotations", node)
             self.visit(node.returns)
         before = self.scope, self.function, self.defining, self.lazy, self.me
         self.defining = (self.scope, node.name)
@@ -476,7 +458,7 @@ class PythonReader(ObjectUses, SourceText):
         self.scope, self.function, self.defining, self.lazy, self.me = before
 
     def visit_AsyncFunctionDef(self, node) -> None:
-        self.need(5, node, "async functions")
+        self.need(5, "async functions", node)
         self.visit_FunctionDef(node)
 
     def arguments(self, arguments: ast.arguments) -> None:
@@ -486,7 +468,7 @@ class PythonReader(ObjectUses, SourceText):
         for group in (arguments.posonlyargs, arguments.args, arguments.kwonlyargs):
             for argument in group:
                 if argument.annotation is not None:
-                    self.need(0, argument, "annotations")
+                    self.need(0, "annotations", argument)
                     self.visit(argument.annotation)
 
     def parameters(self, arguments: ast.arguments) -> None:
@@ -514,7 +496,7 @@ class PythonReader(ObjectUses, SourceText):
         for keyword in node.keywords:
             self.visit(keyword.value)
         if getattr(node, "type_params", None):
-            self.need(12, node, "type parameters")
+            self.need(12, "type parameters", node)
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
         self.scope = PythonScope(self.scope, True)
@@ -536,7 +518,7 @@ class PythonReader(ObjectUses, SourceText):
                 self.visit(target)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
-        self.need(6, node, "variable annotations")
+        self.need(6, "variable annotations", node)
         self.visit(node.annotation)
         if node.value is not None:
             self.visit(node.value)
@@ -562,13 +544,13 @@ class PythonReader(ObjectUses, SourceText):
             self.hold(name, annotated or self.type_of(node))
 
     def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
-        self.need(8, node, "assignment expression")
+        self.need(8, "assignment expression", node)
         self.visit(node.value)
         self.visit(node.target)
         self.hold(node.target.id, self.type_of(node.value))
 
     def visit_Match(self, node) -> None:
-        self.need(10, node, "match statement")
+        self.need(10, "match statement", node)
         self.visit(node.subject)
         first = len(self.ways)
         for case in node.cases:
@@ -576,26 +558,15 @@ class PythonReader(ObjectUses, SourceText):
         self.merge(first, self.scope.objects)
 
     def visit_TemplateStr(self, node) -> None:
-        self.need(14, node, "t-string")
+        self.need(*_NEEDED[node.__class__.__name__], node)
         self.inside(node)
 
-    def visit_TypeAlias(self, node) -> None:
-        self.need(12, node, "type alias statement")
-        self.inside(node)
-
-    def visit_Nonlocal(self, node: ast.Nonlocal) -> None:
-        self.need(0, node, "nonlocal")
-
-    def visit_YieldFrom(self, node: ast.YieldFrom) -> None:
-        self.need(3, node, "yield from")
-        self.visit(node.value)
+    visit_TypeAlias = visit_Nonlocal = visit_YieldFrom = visit_TemplateStr
 
     def visit_Raise(self, node: ast.Raise) -> None:
         if node.cause is not None:
-            self.need(0, node, "raise from")
+            self.need(0, "raise from", node)
         self.inside(node)
-
-    # Mentions
 
     def visit_Constant(self, node: ast.Constant) -> None:
         if self.has_paths and node.value.__class__ is str:
@@ -618,21 +589,18 @@ class PythonReader(ObjectUses, SourceText):
         reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
         self.references[reference] = None
 
-    def all_references(self) -> tuple[Reference, ...]:
-        return tuple(sorted(self.references, key=lambda reference: (reference.line, reference.column)))
-
     def visit_BinOp(self, node: ast.BinOp) -> None:
         if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
             self.path(node)
         elif node.op.__class__ is ast.MatMult:
-            self.need(5, node, "`@` operator")
+            self.need(5, "`@` operator", node)
         elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
             self.python2_only.append(Problem(node.lineno, "print statement"))
         self.visit(node.left)
         self.visit(node.right)
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        self.need(6, node, "f-string")
+        self.need(6, "f-string", node)
         if sys.version_info >= (3, 12):
             self.quotes(node)
         self.path(node)
@@ -650,7 +618,7 @@ class PythonReader(ObjectUses, SourceText):
             if isinstance(value, ast.FormattedValue):
                 expression = self.source(value.value)
                 if match.group(1) in expression or "\\" in expression:
-                    self.need(12, node, "quotes or backslash inside an f-string")
+                    self.need(12, "quotes or backslash inside an f-string", node)
 
     def visit_List(self, node) -> None:
         if len(node.elts) > 1:

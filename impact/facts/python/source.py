@@ -5,6 +5,7 @@ import codecs
 import re
 import warnings
 from functools import lru_cache
+from operator import attrgetter
 from typing import NamedTuple
 
 import msgspec
@@ -152,7 +153,7 @@ def extract(data: bytes) -> PythonFile:
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.attributes(),
-                references=reader.all_references(),
+                references=tuple(sorted(reader.references, key=attrgetter("line", "column"))),
                 python2_only=old or tuple(reader.python2_only),
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
@@ -194,15 +195,6 @@ def _imports_by_line(text: str) -> tuple[Import, ...]:
                     imports.append(Import(words[0], (), 0, line, column, column > 1, conditions))
         else:
             names = [part.split() for part in match.group("names").strip("()").split(",")]
-            imports.append(
-                Import(
-                    match.group("module") or "",
-                    tuple(words[0] for words in names if words),
-                    len(match.group("dots")),
-                    line,
-                    column,
-                    column > 1,
-                    conditions,
-                )
-            )
+            given, dots = tuple(words[0] for words in names if words), len(match.group("dots"))
+            imports.append(Import(match.group("module") or "", given, dots, line, column, column > 1, conditions))
     return tuple(imports)

@@ -156,17 +156,18 @@ class _Module:
                 for target in node.targets:
                     self.assigned(target, node.value, "", scope, conditions)
             elif isinstance(node, ast.AnnAssign):
-                self.annotated(node, scope, conditions)
+                if node.value is not None or scope:  # `x: int` binds nothing in a module
+                    self.assigned(node.target, node.value, _text(node.annotation), scope, conditions)
             elif isinstance(node, ast.AugAssign):
                 self.added(node, scope)
             elif isinstance(node, ast.Import):
                 for alias in node.names:
                     name = alias.asname or alias.name.partition(".")[0]
-                    self.taken(name, alias.name, 0, "", node, scope, conditions)
+                    self.imports.append(Taken(name, alias.name, 0, "", node.lineno, scope, conditions))
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
-                    name = alias.asname or alias.name
-                    self.taken(name, node.module or "", node.level, alias.name, node, scope, conditions)
+                    name, module = alias.asname or alias.name, node.module or ""
+                    self.imports.append(Taken(name, module, node.level, alias.name, node.lineno, scope, conditions))
             elif isinstance(node, ast.Delete):
                 self.deleted(node, scope)
             elif isinstance(node, ast.Expr):
@@ -191,8 +192,8 @@ class _Module:
             self.block([*node.body, *node.orelse], scope, conditions)
         elif isinstance(node, ast.While):
             self.block([*node.body, *node.orelse], scope, conditions)
-        elif node.__class__.__name__ == "Match":
-            for case in getattr(node, "cases", ()):
+        elif isinstance(node, ast.Match):
+            for case in node.cases:
                 self.block(case.body, scope, (*conditions, Condition("python", "match")))
         elif node.__class__.__name__ == "TypeAlias":
             target = getattr(node, "name", None)
@@ -215,8 +216,6 @@ class _Module:
         self.block(node.orelse, scope, (*conditions, TRY) if guarded else conditions)
         self.block(node.finalbody, scope, conditions)
 
-    # What is bound
-
     def function(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         decorators = tuple(_dotted(decorator) for decorator in node.decorator_list)
         last = {decorator.rpartition(".")[2] for decorator in decorators}
@@ -236,18 +235,15 @@ class _Module:
         given = tuple(parameters_of(node.args))
         if scope and kind != "staticmethod" and given and given[0].kind in ("positional", "normal"):
             given = given[1:]
+        name = f"{scope}.{node.name}" if scope else node.name
+        returns = _text(node.returns) if node.returns is not None else ""
         self.names.append(
             Bound(
-                f"{scope}.{node.name}" if scope else node.name,
-                kind,
-                node.lineno,
-                () if kind == "property" else given,
-                _text(node.returns) if node.returns is not None else "",
+                name, kind, node.lineno, () if kind == "property" else given, returns,
                 decorators=tuple(name for name in decorators if name),
-                deprecated=_deprecated(node.decorator_list) or _warned(node.body),
-                conditions=conditions,
+                deprecated=_deprecated(node.decorator_list) or _warned(node.body), conditions=conditions,
             )
-        )
+        )  # fmt: skip
         if node.name == "__getattr__":
             self.open.append((scope, "__getattr__"))
         elif scope and node.name == "__getattribute__":
@@ -295,15 +291,10 @@ class _Module:
         bases = tuple(_text(base) for base in node.bases)
         self.names.append(
             Bound(
-                name,
-                "class",
-                node.lineno,
-                bases=bases,
-                decorators=tuple(d for d in decorators if d),
-                deprecated=_deprecated(node.decorator_list),
-                conditions=conditions,
+                name, "class", node.lineno, bases=bases, decorators=tuple(d for d in decorators if d),
+                deprecated=_deprecated(node.decorator_list), conditions=conditions,
             )
-        )
+        )  # fmt: skip
         for meta in metaclass:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
@@ -346,11 +337,6 @@ class _Module:
                 self.names.append(Bound(name, "attribute", target.lineno, (), "", _literal(value),
                                         conditions=conditions))  # fmt: skip
 
-    def annotated(self, node: ast.AnnAssign, scope: str, conditions: tuple[Condition, ...]) -> None:
-        if node.value is None and not scope:
-            return  # `x: int` binds nothing in a module
-        self.assigned(node.target, node.value, _text(node.annotation), scope, conditions)
-
     def subscript(self, target: ast.Subscript, scope: str) -> None:
         """`globals()[name] = ...` and `sys.modules[name] = ...`."""
         holder = target.value
@@ -362,12 +348,6 @@ class _Module:
                 self.open.append((scope, f"{_dotted(holder.func)}()[...]"))
         elif _dotted(holder) == "sys.modules":
             self.open.append((scope, "sys.modules[...]"))
-
-    def taken(
-        self, name: str, module: str, level: int, original: str, node: ast.stmt, scope: str,
-        conditions: tuple[Condition, ...],
-    ) -> None:  # fmt: skip
-        self.imports.append(Taken(name, module, level, original, node.lineno, scope, conditions))
 
     def deleted(self, node: ast.Delete, scope: str) -> None:
         for target in _flat(node.targets):
@@ -457,9 +437,7 @@ class _Module:
             self.open.append(("", "globals().update()"))
 
 
-_INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem) + (
-    (ast.match_case,) if hasattr(ast, "match_case") else ()
-)
+_INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
 
 
 def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:

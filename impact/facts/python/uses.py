@@ -62,14 +62,13 @@ class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int
 
 
-class _Class:
+class _Class(msgspec.Struct, eq=False):
     """A class of the file. bases: as types. members: what it defines itself. objects: types of what `self` holds."""
 
-    def __init__(self, bases: list[str]):
-        self.bases = bases
-        self.members: set[str] = set()
-        self.objects: dict[str, str] = {}
-        self.methods: dict[str, tuple[int, int, str]] = {}
+    bases: list[str]
+    members: set[str] = set()
+    objects: dict[str, str] = {}
+    methods: dict[str, tuple[int, int, str]] = {}
 
 
 class _Raw(NamedTuple):
@@ -128,8 +127,6 @@ class ObjectUses(PythonValues):
     def may_not_run(self) -> bool:
         """True where reading or starting the file does not surely come by."""
         return self.lazy or self.conditional
-
-    # What things are
 
     def type_of(self, node) -> str:
         """The type of an expression's value, empty where it does not show."""
@@ -242,8 +239,6 @@ class ObjectUses(PythonValues):
         inside.objects[target.attr] = type_ if inside.objects.get(target.attr, type_) == type_ else ""
         return True
 
-    # What is used
-
     def use_member(self, type_: str, steps: list[ast.Attribute], call: ast.Call | None) -> None:
         """`object.a.b`, called or not. type_: of the object. steps: the nodes of its members, the last is the whole."""
         own, outer = type_[:1] == OWN and "." not in type_, steps[-1]
@@ -301,8 +296,6 @@ class ObjectUses(PythonValues):
         if key not in self.raw:
             self.raw[key] = _Raw(type_, member, given, node.lineno, node.col_offset, lazy, conditions)
 
-    # Classes and functions
-
     def enter_class(self, node: ast.ClassDef) -> _Class:
         """A class of the file, from here on known by its name."""
         found = _Class([self.called(base) for base in node.bases])
@@ -326,8 +319,6 @@ class ObjectUses(PythonValues):
         if plain and not node.name.startswith("_"):
             column = node.col_offset + (4 if node.__class__ is ast.FunctionDef else 10)
             inside.methods[node.name] = (node.lineno, column, _parameters(node.args))
-
-    # The end
 
     def object_uses(self, column: Callable[[int, int], int]) -> tuple[PythonUse, ...]:
         """Every use of what is not the file's own, in the order of the source. column: of a line and an offset."""

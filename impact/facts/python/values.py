@@ -13,40 +13,17 @@ from ..condition import Condition
 from .constants import Constants, PackagePath, path_of, put_together
 
 # Functions and launch substitutions whose first argument is a package's name.
-PACKAGE_CALLS = frozenset(
-    (
-        "get_package_share_directory",
-        "get_package_share_path",
-        "get_package_prefix",
-        "get_pkg_dir",
-        "load_manifest",
-        "FindPackage",
-        "FindPackagePrefix",
-        "FindPackageShare",
-    )
-)
+PACKAGE_CALLS = frozenset((
+    "get_package_share_directory", "get_package_share_path", "get_package_prefix", "get_pkg_dir", "load_manifest",
+    "FindPackage", "FindPackagePrefix", "FindPackageShare",
+))  # fmt: skip
 JOINS = frozenset(("join", "joinpath", "PathJoinSubstitution"))
 # Wrappers through which the first argument's value passes unchanged, as far as naming a file goes.
-WRAPPERS = frozenset(
-    (
-        "abspath",
-        "normpath",
-        "realpath",
-        "expanduser",
-        "str",
-        "Path",
-        "PurePath",
-        "PythonLaunchDescriptionSource",
-        "AnyLaunchDescriptionSource",
-        "FrontendLaunchDescriptionSource",
-        "XMLLaunchDescriptionSource",
-        "YAMLLaunchDescriptionSource",
-        "TextSubstitution",
-        "ParameterFile",
-        "as_posix",
-        "resolve",
-    )
-)
+WRAPPERS = frozenset((
+    "abspath", "normpath", "realpath", "expanduser", "str", "Path", "PurePath", "PythonLaunchDescriptionSource",
+    "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource", "XMLLaunchDescriptionSource",
+    "YAMLLaunchDescriptionSource", "TextSubstitution", "ParameterFile", "as_posix", "resolve",
+))  # fmt: skip
 PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_\-]*")
 VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, ast.Tuple, ast.Call))
 

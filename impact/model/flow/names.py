@@ -71,7 +71,6 @@ _RULE = re.compile(
     r":=(?P<replacement>\S+)\Z"
 )
 _KINDS = {"rostopic": "topic", "rosservice": "service"}
-_NODE_NAMES = ("__node", "__name")
 
 
 def ros2_rule(text: str) -> RemappingRule | None:
@@ -120,7 +119,7 @@ def ros2_name(name: str, node: str, namespace: str) -> str:
 def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[RemappingRule], kind: str = "topic") -> str:
     """The full name after remapping: the first rule that matches holds, and none is applied to what it gives.
 
-    node and namespace: as they are once ros2_node() has applied `__node` and `__ns`. kind: `topic` or `service`.
+    node and namespace: as they are once `__node` and `__ns` are applied. kind: `topic` or `service`.
     Raises NameRefused where the name, or the replacement of the rule that matches, is none; rules that match no legal
     name never match.
     """
@@ -135,11 +134,3 @@ def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[Remappin
         if matches:
             return ros2_name(rule.replacement, node, namespace)
     return full
-
-
-def ros2_node(name: str, namespace: str, rules: Iterable[RemappingRule]) -> tuple[str, str]:
-    """Name and namespace of a node after `__node` (or `__name`) and `__ns`; of each the first rule for it holds."""
-    rules = tuple(rules)
-    renamed = next((r.replacement for r in rules if r.match in _NODE_NAMES and r.node in ("", name)), name)
-    moved = next((r.replacement for r in rules if r.match == "__ns" and r.node in ("", renamed)), namespace)
-    return renamed, joined("/", moved)

@@ -10,7 +10,6 @@ from .graph import Endpoint, Graph, Publish
 
 # Topics through which everything would reach everything.
 EVERYWHERE = frozenset(("/rosout", "/parameter_events", "/diagnostics", "/clock"))
-_ALL = 1_000_000
 _SENDS = {"publisher": "subscriber", "client": "server", "action client": "action server"}
 _KINDS = {"subscriber": "topic", "server": "service", "action server": "action"}
 
@@ -49,20 +48,11 @@ class DownstreamSearch:
             if endpoint.role in ("client", "action client"):
                 self._calls.setdefault(endpoint.node, []).append(endpoint)
 
-    def from_topic(self, topic: str, role: str = "publisher", most: int = 200) -> list[ReachedNode]:
-        """Nodes that a message on a topic (or a request, by the sender's role) reaches, nearest first."""
-        return self._walk(self._next(topic, role), most)
-
-    def from_node(self, node: str, most: int = 200) -> list[ReachedNode]:
-        """Nodes downstream of all that a node sends, nearest first; the node itself is left out."""
-        first = [step for topic, role in self._sent(node, None) for step in self._next(topic, role)]
-        return [reached for reached in self._walk(first, most) if reached.node != node]
-
     def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[ReachedNode]:
         """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who
         sends them, which is left out."""
         first = [step for topic, role in sent for step in self._next(topic, role)]
-        return [reached for reached in self._walk(first, _ALL) if reached.node != node]
+        return [reached for reached in self._walk(first) if reached.node != node]
 
     def sent_on(self, node: str, path: str, line: int, stored: bool) -> list[tuple[str, str]]:
         """What a node may send because of a subscriber, server or timer that is made at a place; as from_sent() takes
@@ -77,10 +67,10 @@ class DownstreamSearch:
                     others.append((publish.topic, "publisher"))
         return list(dict.fromkeys(own or others))
 
-    def _walk(self, first: Iterable[Step], most: int) -> list[ReachedNode]:
+    def _walk(self, first: Iterable[Step]) -> list[ReachedNode]:
         found: dict[str, ReachedNode] = {}
         queue: deque[tuple[Step, ...]] = deque((step,) for step in first)
-        while queue and len(found) < most:
+        while queue:
             steps = queue.popleft()
             last = steps[-1]
             if last.node in found:
@@ -97,8 +87,8 @@ class DownstreamSearch:
         for endpoint in self._receivers.get((receiver, topic), ()):
             yield Step(_KINDS[receiver], topic, endpoint.node, endpoint.path, endpoint.line)
 
-    def _sent(self, node: str, came: Step | None) -> Iterator[tuple[str, str]]:
-        """What a node sends on: everything, or what may be published because of what came in.
+    def _sent(self, node: str, came: Step) -> Iterator[tuple[str, str]]:
+        """What a node sends on: what may be published because of what came in.
 
         A publish statement that a timer or loop triggers may send what a callback has stored, so it counts too; one
         that another subscriber's callback alone triggers does not.
@@ -114,9 +104,9 @@ class DownstreamSearch:
                 yield endpoint.topic, endpoint.role
 
     @staticmethod
-    def _may_follow(publish: Publish, came: Step | None) -> bool:
-        if came is None or not publish.triggers:
-            return True
-        if any(trigger.kind not in ("subscriber", "service", "action") for trigger in publish.triggers):
-            return True
-        return any((trigger.path, trigger.line) == (came.path, came.line) for trigger in publish.triggers)
+    def _may_follow(publish: Publish, came: Step) -> bool:
+        return not publish.triggers or any(
+            trigger.kind not in ("subscriber", "service", "action")
+            or (trigger.path, trigger.line) == (came.path, came.line)
+            for trigger in publish.triggers
+        )

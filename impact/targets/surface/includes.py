@@ -10,7 +10,7 @@ import msgspec
 import zstandard
 
 from ...conditions import Environment, all_hold
-from ...facts.cpp import Include
+from ...facts.cpp.lexical import Include
 from ...facts.surface import HeaderSurface, plain
 from ..version import newest_up_to
 

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.cpp import CppFile, extract
+from rosimpact.impact.facts.cpp.lexical import CppFile, extract
 
 
 def conditions_of(item):
