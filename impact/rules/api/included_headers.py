@@ -13,8 +13,7 @@ from ...targets.availability import of_row
 from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Availability, Symbol
 from ...targets.target import ChangeInForce
-from ..rule import FixAction
-from ..severity import Doubt, doubts_of_place
+from ..rule import Doubt, FixAction, doubts_of_place
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
 

@@ -11,8 +11,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package, snake
 from ...targets.surface.fields import default_fields
 from ...targets.symbol import Availability
-from ..severity import Doubt
-from ..text import Text, Value
+from ..rule import Doubt, Text, Value
 from .diagnosis import find_missing
 
 TEXTS = {

@@ -16,7 +16,7 @@ from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
 from ...targets.symbol import Availability
-from ..severity import Doubt, doubts_of_place
+from ..rule import Doubt, doubts_of_place
 
 
 class UnservedUse(NamedTuple):

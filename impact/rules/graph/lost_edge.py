@@ -31,9 +31,7 @@ from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
 

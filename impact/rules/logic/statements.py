@@ -12,8 +12,7 @@ from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic
-from ..severity import Doubt
+from ..rule import Diagnostic, Doubt
 
 _LONGEST = 120
 # How the message of a changed condition goes on, and how every message of the family ends.

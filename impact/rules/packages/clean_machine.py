@@ -12,7 +12,7 @@ import re
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
-from ..severity import Doubt
+from ..rule import Doubt
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
 """How CMake asks for something, so that the configuration stops without it."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
-from ..fix_actions import Declare, Remove
+from ..rule import Declare, Remove
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
 _FOR_DEPENDANTS = frozenset({"build_export", "exec", "buildtool_export"})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...model.view import TargetView
 from ...targets.surface.offers import Offers
-from ..severity import Doubt
+from ..rule import Doubt
 
 
 def shares_one_folder(view: TargetView) -> bool:

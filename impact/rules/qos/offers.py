@@ -12,8 +12,7 @@ from ...model.cmake.build import At
 from ...model.flow.edges import FlowPair, display_name, met
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace
-from ..rule import Diagnostic
-from ..text import Text, Value
+from ..rule import Diagnostic, Text, Value
 
 _ROS1 = frozenset(("roscpp", "rospy"))
 

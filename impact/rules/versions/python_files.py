@@ -10,9 +10,7 @@ from ...model.package import ImportUse, SyntaxUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
-from ..rule import Diagnostic
-from ..severity import Doubt, doubts_of_place
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
 
 
 class Refused(NamedTuple):
