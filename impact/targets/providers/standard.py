@@ -222,8 +222,8 @@ def oldest() -> int:
 
 # Headers of C that are told of: `cmath` is `math.h` as well.
 _C = frozenset(
-    ("cstdint", "cfloat", "climits", "cmath", "cstdlib", "cstring", "cstdio", "cassert", "cerrno", "cinttypes", "csignal",
-     "cstdarg")
+    ("cstdint", "cfloat", "climits", "cmath", "cstdlib", "cstring", "cstdio", "cassert", "cerrno", "cinttypes",
+     "csignal", "cstdarg")
 )  # fmt: skip
 
 
