@@ -1,7 +1,5 @@
 """What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache

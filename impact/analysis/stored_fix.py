@@ -1,7 +1,5 @@
 """Actions of a fix in the form in which results of earlier runs are stored."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ..rules.fix_actions import Declare, Insert, Remove, Replace

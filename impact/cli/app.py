@@ -1,7 +1,5 @@
 """The command line: options and help; each command imports what it needs when it runs."""
 
-from __future__ import annotations
-
 import gc
 import io
 import sys

@@ -1,7 +1,5 @@
 """rosimpact check."""
 
-from __future__ import annotations
-
 import os
 import sys
 from contextlib import suppress

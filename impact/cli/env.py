@@ -1,7 +1,5 @@
 """rosimpact env."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ...edges.console import (

@@ -1,7 +1,5 @@
 """rosimpact explain."""
 
-from __future__ import annotations
-
 from ...edges.console import (
     say,
 )

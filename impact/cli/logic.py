@@ -1,7 +1,5 @@
 """rosimpact logic."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

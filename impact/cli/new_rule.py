@@ -1,7 +1,5 @@
 """Lays out a rule: its module and its first file of cases, which work and are to be edited."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What every command does with its answer: checks formats, prints or saves, says notes, shows progress."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """rosimpact upgrade."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ..analysis.findings import fails

@@ -1,7 +1,5 @@
 """rosimpact why."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ...edges.console import (

@@ -1,7 +1,5 @@
 """What a package offers, and what changed between two versions of it, as text, JSON and Markdown."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple

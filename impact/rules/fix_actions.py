@@ -1,7 +1,5 @@
 """What a rule proposes to change, by name and place. Rules see no bytes; fix.py makes byte edits of it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

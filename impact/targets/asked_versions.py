@@ -1,8 +1,6 @@
 """The versions of released packages that a run can say something about: what its targets have, and what an update of
 each of them brings. Uses that are alike on all of these need not be looked for."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 

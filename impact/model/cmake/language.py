@@ -1,7 +1,5 @@
 """Commands of the language itself: variables, lists, strings, paths, files, includes."""
 
-from __future__ import annotations
-
 import itertools
 import posixpath
 

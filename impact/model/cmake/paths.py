@@ -1,7 +1,5 @@
 """Commands over paths and files: what they answer comes from the tree alone."""
 
-from __future__ import annotations
-
 import itertools
 import posixpath
 

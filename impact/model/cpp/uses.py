@@ -1,7 +1,5 @@
 """Uses in one C++ file of other packages' names that are not the same in all versions: C++ names, overrides, fields."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator
 

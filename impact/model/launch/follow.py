@@ -7,8 +7,6 @@ Sources: roslaunch's loader.py, xmlloader.py and substitution_args.py; launch's 
 node.py, load_composable_nodes.py and push_ros_namespace.py.
 """
 
-from __future__ import annotations
-
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -3,8 +3,6 @@
 Sources: roslaunch's substitution_args.py and convert_value(); launch's PythonExpression.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 from collections.abc import Iterable, Mapping, Sequence

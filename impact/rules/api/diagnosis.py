@@ -1,7 +1,5 @@
 """What the rules of this family say of something that a target lacks, or will lack."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 
 from ...model.view import TargetView

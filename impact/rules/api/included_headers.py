@@ -1,7 +1,5 @@
 """What is known of the headers that packages include, as the rules on them ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

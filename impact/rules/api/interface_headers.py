@@ -1,7 +1,5 @@
 """Headers that are generated from interfaces: by a path of the other ROS generation, of C, or of no interface."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

@@ -21,8 +21,6 @@ Not reported
     Workspaces that hold generate_parameter_library itself.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from ...model.package import IncludeUse

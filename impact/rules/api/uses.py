@@ -1,7 +1,5 @@
 """Uses of C++ and Python names of released packages that a target does not serve as they need."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 

@@ -22,8 +22,6 @@ Not reported
     may use; endpoints whose name was not known at the base.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.build import At

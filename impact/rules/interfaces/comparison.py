@@ -1,7 +1,5 @@
 """Definitions before and after a change, and the packages that use them, for the rules of this family."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Publish statements whose logic changed since the base, as diagnostics, for the rules of this family."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from ...logic.changes import LogicChange

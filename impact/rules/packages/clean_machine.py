@@ -5,8 +5,6 @@ the build farm, which builds packages one by one, or a fresh container after ros
 of the workspace bring.
 """
 
-from __future__ import annotations
-
 import re
 
 from ...model.view import Need, TargetView

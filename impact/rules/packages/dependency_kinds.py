@@ -1,7 +1,5 @@
 """Dependencies that are declared, and not for what they are used, as the rules on them ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Set
 from typing import NamedTuple
 

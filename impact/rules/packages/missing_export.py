@@ -24,8 +24,6 @@ Not reported
     one folder, a missing ament_export_dependencies is a note.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, passed_on_package, public_links

@@ -1,7 +1,5 @@
 """What packages use and do not declare, as the rules on it ask for it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from ...model.misspelling import folded, one_edit

@@ -4,8 +4,6 @@ Source of the tables: "Quality of service compatibilities" in
 https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-Settings.html.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.build import At

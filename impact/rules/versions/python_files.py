@@ -1,7 +1,5 @@
 """What a Python does not accept: that of the target, or, where that is Python 2, that of the newest distro."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 

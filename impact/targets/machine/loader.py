@@ -3,8 +3,6 @@
 As ld.so(8) describes: DT_RUNPATH or DT_RPATH of the file, LD_LIBRARY_PATH, the cache, the standard folders.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Which Debian packages come along with one that is installed: the shipped graph, made by databuild/apt.py."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache, cached_property
 from pathlib import Path

@@ -5,8 +5,6 @@ SQLite, together with the reviewed facts of `data/providers.yaml` that no index 
 remembers it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import sqlite3
 import threading

@@ -8,8 +8,6 @@ standards in use, and listing the standard headers that it read. Where standards
 counts. It tells of GCC 5 and 7, of which names brought more than later versions did.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import msgspec

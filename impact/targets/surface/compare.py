@@ -1,7 +1,5 @@
 """What changed between two versions of a package, of every kind and in one form."""
 
-from __future__ import annotations
-
 import posixpath
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

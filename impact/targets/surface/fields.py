@@ -10,8 +10,6 @@ ROS generation:
                                             `@` the states (none told: whenever the interface is there), `>` successor
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Iterable

@@ -4,8 +4,6 @@ Told by the stored surfaces themselves, since a name can be reached by several p
 classes; what only some versions have or take is reported, so that nothing rests on one reading alone.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable
 from functools import lru_cache
