@@ -40,7 +40,7 @@ from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
-from .fix_actions import Declare, Insert, Remove, Replace
+from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
 from .severity import AT_RUN_TIME, EXPORTED, Doubt, Together, doubts_of_place, severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
@@ -53,18 +53,6 @@ __all__ = [
 
 SEVERITIES = ("note", "warning", "error")
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
-
-
-class Edit(NamedTuple):
-    """A replacement in one file, by byte offsets; start == end inserts."""
-
-    path: str
-    start: int
-    end: int
-    text: str
-
-
-FixAction = Edit | Declare | Remove | Replace | Insert
 
 
 class Diagnostic(NamedTuple):
