@@ -109,12 +109,12 @@ def name_type(annotation: object) -> str:
     """An annotation as it is written."""
     if isinstance(annotation, type) and not hasattr(annotation, "__args__"):
         return annotation.__name__
-    return str(getattr(annotation, "__forward_arg__", annotation))
+    return re.sub(r"[\w.]+\.(?=\w)", "", str(getattr(annotation, "__forward_arg__", annotation)))
 
 
 def returned(function: object) -> str:
     """The annotation of what a function returns, empty without one."""
-    return str(getattr(function, "__annotations__", {}).get("return", ""))
+    return name_type(getattr(function, "__annotations__", {}).get("return", ""))
 
 
 def first_sentence(of: object) -> str:
