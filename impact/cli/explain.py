@@ -1,11 +1,7 @@
 """rosimpact explain."""
 
-from ...edges.console import (
-    say,
-)
-from .output import (
-    deliver_answer,
-)
+from ...edges.console import say
+from .output import deliver_answer
 
 
 def explain(name: str | None) -> int:

@@ -3,16 +3,9 @@
 import os
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    steps,
-)
+from ...edges.console import UserError, steps
 from ...edges.version import __version__
-from .output import (
-    deliver_answer,
-    say_notes,
-    style_of,
-)
+from .output import deliver_answer, say_notes, style_of
 
 LOGIC_FORMATS = ("text", "json", "html")
 

@@ -6,16 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    rewrite,
-    run_command,
-    say,
-    visible,
-    write,
-    write_exactly,
-    write_json,
-)
+from ...edges.console import UserError, rewrite, run_command, say, visible, write, write_exactly, write_json
 from ...edges.files import check_writable_path, outermost, write_file
 from ..report.style import PLAIN, Style, style_for
 

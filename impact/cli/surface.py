@@ -4,18 +4,9 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    counted,
-    steps,
-)
+from ...edges.console import UserError, counted, steps
 from ...edges.version import __version__
-from .output import (
-    check_output,
-    deliver_answer,
-    say_notes,
-    style_of,
-)
+from .output import check_output, deliver_answer, say_notes, style_of
 
 
 def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:

@@ -2,13 +2,8 @@
 
 from pathlib import Path
 
-from ...edges.console import (
-    json_text,
-)
-from .output import (
-    TEXT_OR_JSON,
-    deliver_answer,
-)
+from ...edges.console import json_text
+from .output import TEXT_OR_JSON, deliver_answer
 
 
 def why(

@@ -6,15 +6,7 @@ import posixpath
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .targets import note_made
-from .values import (
-    MAX_WORDS,
-    UNSET,
-    CMakeValue,
-    Word,
-    following,
-    position,
-    word,
-)
+from .values import MAX_WORDS, UNSET, CMakeValue, Word, following, position, word
 
 
 @handles("get_filename_component", least=3)
