@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from ....edges.memory import cached_method
 from ...facts.cpp.code import CppCode
 from ...facts.cpp.names import split_at_commas, without_templates
 from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
@@ -158,10 +159,8 @@ class Resolver:
         self.vocabulary, self.scope = vocabulary, scope
         self._types: dict[tuple[str, str, str], CppType | None] = {}
         self._named: dict[tuple[str, str, str], CppType | None] = {}
-        self._homes: dict[str, list[CppClass]] = {}
         self._lines: dict[str, tuple[CppClass, ...]] = {}
         self._opened: tuple[str, ...] | None = None
-        self._renamed: dict[str, tuple[str, ...]] = {}
         self._elsewhere: Resolver | None = None if self.files else self
 
     @property
@@ -188,21 +187,19 @@ class Resolver:
         for space in self.opened(place):
             yield f"{space}::{name}"
 
+    @cached_method
     def _meant(self, head: str) -> tuple[str, ...]:
         """What the head of a name stands for by `using a::head` or `namespace head = a`."""
-        known = self._renamed.get(head)
-        if known is None:
-            found: list[str] = []
-            for file in self.files:
-                meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
-                if meant and meant != head:
-                    found.append(meant)
-                    deeper, more, tail = meant.partition("::")
-                    found += [
-                        other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
-                    ]
-            known = self._renamed[head] = tuple(dict.fromkeys(found))
-        return known
+        found: list[str] = []
+        for file in self.files:
+            meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
+            if meant and meant != head:
+                found.append(meant)
+                deeper, more, tail = meant.partition("::")
+                found += [
+                    other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
+                ]
+        return tuple(dict.fromkeys(found))
 
     def opened(self, place: CodePlace) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
@@ -214,19 +211,17 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
+    @cached_method
     def homes(self, class_: str) -> list[CppClass]:
         """The classes of the package that a name can be: those of that full name, else those that end so."""
-        known = self._homes.get(class_)
-        if known is None:
-            last = class_.rpartition("::")[2]
-            found = [one for file in self.files for one in file.classes_named(last)]
-            exact = [one for one in found if one.name == class_]
-            ending = f"::{class_}"
-            known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
-            if not known and "::" in class_:
-                # A namespace may be left out, or brought by a macro.
-                known = [one for one in found if "::" not in one.name]
-            self._homes[class_] = known
+        last = class_.rpartition("::")[2]
+        found = [one for file in self.files for one in file.classes_named(last)]
+        exact = [one for one in found if one.name == class_]
+        ending = f"::{class_}"
+        known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
+        if not known and "::" in class_:
+            # A namespace may be left out, or brought by a macro.
+            known = [one for one in found if "::" not in one.name]
         return known
 
     # -- types ---------------------------------------------------------------------------------------------------------
