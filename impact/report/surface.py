@@ -37,8 +37,6 @@ class SurfaceDifference(NamedTuple):
     changes: dict[str, tuple[VersionChange, ...]]
 
 
-# -- differences -------------------------------------------------------------------------------------------------------
-
 _GROUPS = ("breaks", "may break", "deprecated", "changed", "added")
 _TITLES = {
     "breaks": "Breaks who uses it",
@@ -187,9 +185,6 @@ def diff_json(found: SurfaceDifference, tool: str) -> str:
 
 def _json(value: Any) -> str:
     return json_text(msgspec.to_builtins(value)) + "\n"
-
-
-# -- one surface -------------------------------------------------------------------------------------------------------
 
 
 _NONE: Mapping[str, str] = {}

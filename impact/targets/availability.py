@@ -152,8 +152,6 @@ class Availabilities:
         ahead = horizons(self.target) if self._given is None else self._given
         return [(one, Availabilities(one.target, providers=self.providers, ahead=())) for one in ahead]
 
-    # Packages
-
     def _package(self, symbol: Symbol) -> Availability:
         target, name = self.target, symbol.name
         version = target.version(name)
@@ -168,8 +166,6 @@ class Availabilities:
         if not last or last not in DISTROS or target.distro not in DISTROS:
             return Availability(symbol, "unknown", name)
         return Availability(symbol, "removed" if DISTROS[last] < DISTROS[target.distro] else "not yet", name)
-
-    # Headers
 
     def _header(self, symbol: Symbol, package: str) -> Availability:
         version = self.target.version(package)
@@ -216,8 +212,6 @@ class Availabilities:
                 found.update(one.path for one in included.written(header, offer.stored) or ())
         return frozenset(found)
 
-    # What surfaces hold
-
     def _offered(self, symbol: Symbol, package: str) -> Availability:
         offer = self.offers.package(package)
         if offer is None:
@@ -249,8 +243,6 @@ class Availabilities:
         if side == PARAMETER:
             return name in offer.parameters
         return self.offers.there(side, name, offer.package)
-
-    # Interfaces and their fields
 
     def _interface(self, symbol: Symbol) -> Availability:
         name, *parts = symbol.name.split(".")
@@ -302,8 +294,6 @@ class Availabilities:
             if change.new and change.state == "removed" and change.package == package:
                 return change.new.rpartition(".")[2]
         return ""
-
-    # Reviewed rows
 
     def _reviewed(self, symbol: Symbol) -> Availability | None:
         name = symbol.name.lower() if symbol.kind == "command" else symbol.name

@@ -168,8 +168,6 @@ class Resolver:
         """The file itself."""
         return self.files[0]
 
-    # -- names ---------------------------------------------------------------------------------------------------------
-
     def meanings(self, name: str, place: CodePlace) -> Iterator[str]:
         """The full names that a name as written can stand for, nearest first."""
         around = place.scope
@@ -223,8 +221,6 @@ class Resolver:
             # A namespace may be left out, or brought by a macro.
             known = [one for one in found if "::" not in one.name]
         return known
-
-    # -- types ---------------------------------------------------------------------------------------------------------
 
     def type_of(self, written: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """What a type as written is; None where it is nothing that is known."""
@@ -399,8 +395,6 @@ class Resolver:
         section = section_of(told, [word for word in words if not _POINTED.fullmatch(word)])
         return type_._replace(section=section, pointer=pointer) if section is not None else None
 
-    # -- classes of the package ----------------------------------------------------------------------------------------
-
     def line_of_own(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
         written where their parameters stood."""
@@ -458,8 +452,6 @@ class Resolver:
             for inner in one.bases
             for known in self.known_bases(inner, _around(one), depth + 1)
         ]
-
-    # -- expressions ---------------------------------------------------------------------------------------------------
 
     def value_of(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
         """What an expression is."""

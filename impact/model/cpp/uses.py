@@ -92,8 +92,6 @@ class ApiUses:
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
 
-    # -- one place -----------------------------------------------------------------------------------------------------
-
     def _use(self, use: Written) -> FoundName | None:
         if use.form == "member":
             return self._of_object(use)
@@ -269,8 +267,6 @@ class ApiUses:
         if callee is not None and callee.kind == "member":
             return "profile" if name == "get_rmw_qos_profile" else ""
         return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
-
-    # -- overrides -----------------------------------------------------------------------------------------------------
 
     def _overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""

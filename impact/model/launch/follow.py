@@ -109,8 +109,6 @@ class _Launch(Filling):
         self.run(file.actions)
         self.generation = before
 
-    # Actions
-
     def run(self, actions: Iterable[Action]) -> None:
         for action in actions:
             self.budget -= 1
@@ -323,8 +321,6 @@ class _Launch(Filling):
     def do_pass(self, action: Action) -> None:
         """What has no place where it stands."""
 
-    # Parameters
-
     def do_parameter(self, action: Action) -> None:
         if self.generation == 1:
             name = self.text(action.get("name") or literal(""))
@@ -436,8 +432,6 @@ class _Launch(Filling):
             filled = self.substituted(entry) if fill else entry
             key = "/".join(part.strip("/") for part in (full.value or "/", *filled.path) if part.strip("/"))
             self.put(f"/{key}", filled.value, known(str(filled.value), assumed), action.line)
-
-    # Nodes
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:

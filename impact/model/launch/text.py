@@ -110,9 +110,6 @@ def flag(value: bool) -> str:
     return "true" if value else "false"
 
 
-# Expressions
-
-
 class CannotTell(Exception):
     """An expression that is not evaluated; the message says why."""
 

@@ -208,8 +208,6 @@ class DistroTarget(Target):
             return self._facts.platform
         return supported[0] if supported else ""
 
-    # Released packages
-
     @cached_method
     def _packages(self) -> Mapping[str, _Released]:
         return _read_released(self._data, self._id, self._cut)
@@ -312,8 +310,6 @@ class DistroTarget(Target):
             (self._id, max(self._cut, released.ts), released.repository),
         )
         return (row[0], row[1] or "", row[2] or "") if row else None
-
-    # Declared dependencies
 
     @cached_property
     def knows_manifests(self) -> bool:  # type: ignore[override]
@@ -567,8 +563,6 @@ class DistroTarget(Target):
                         found[key] = resolution
         return found
 
-    # Platform libraries
-
     @cached_method
     def _libraries(self) -> dict[str, Library]:
         return {
@@ -613,8 +607,6 @@ class DistroTarget(Target):
         """Platform libraries whose version is known here."""
         own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
         return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
-
-    # Known upstream changes
 
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""

@@ -87,8 +87,6 @@ class Providers:
     def __reduce__(self):
         return Providers, (self._data, self._cache)
 
-    # Lookups
-
     @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
@@ -225,8 +223,6 @@ class Providers:
         """Platforms whose system packages are in the table."""
         return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
 
-    # Headers of released packages over time
-
     def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
 
@@ -269,8 +265,6 @@ class Providers:
             if found:
                 return [provider._replace(sure=False) for provider in found]
         return []
-
-    # Rows
 
     def _facts(self, kind: str, name: str) -> list[Provider]:
         entries = self._reviewed.get((kind, name))
@@ -371,9 +365,6 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
         span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
         for span in spans
     )
-
-
-# The file
 
 
 class _Info(msgspec.Struct, frozen=True):

@@ -101,8 +101,6 @@ class PythonOffers:
         return Availability(Symbol("python", name, (offer.package,)), state, offer.package, offer.version, first,
                             evidence=evidence if form != "never" else None, **more)  # fmt: skip
 
-    # Names
-
     def _missing(self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames) -> Availability | None:
         if use.how == "override":
             return None
@@ -175,8 +173,6 @@ class PythonOffers:
             if known is not None and known.state in ("removed", "moved"):
                 return known.instead
         return ""
-
-    # Calls
 
     def _refused(
         self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames, entry: PythonName

@@ -324,12 +324,6 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
         yield from range(count)
 
 
-# -- packing -----------------------------------------------------------------------------------------------------------
-
-
-# -- the file ----------------------------------------------------------------------------------------------------------
-
-
 class Surfaces:
     """A file of surfaces. Raises StoredSurfacesError when it cannot be opened."""
 
