@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from rosimpact.edges.memory import Kept
 from rosimpact.impact.facts.manifest import Manifest
 from rosimpact.impact.facts.setup import SetupFile
 from rosimpact.impact.model.cmake.build import Build
@@ -99,8 +100,8 @@ def find_rows(kind: type) -> Iterator[tuple[type, Row]]:
             if isinstance(value, (property, cached_property)):
                 function = value.fget if isinstance(value, property) else value.func
                 yield owner, Row(name, returned(function), first_sentence(function))
-            elif isinstance(value, (staticmethod, classmethod)) or inspect.isfunction(value):
-                function = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
+            elif isinstance(value, (staticmethod, classmethod, Kept)) or inspect.isfunction(value):
+                function = getattr(value, "__func__", value)
                 parameters = [each for each in inspect.signature(function).parameters if each not in ("self", "cls")]
                 yield owner, Row(f"{name}({', '.join(parameters)})", returned(function), first_sentence(function))
 
@@ -109,12 +110,12 @@ def name_type(annotation: object) -> str:
     """An annotation as it is written."""
     if isinstance(annotation, type) and not hasattr(annotation, "__args__"):
         return annotation.__name__
-    return str(getattr(annotation, "__forward_arg__", annotation))
+    return re.sub(r"[\w.]+\.(?=\w)", "", str(getattr(annotation, "__forward_arg__", annotation)))
 
 
 def returned(function: object) -> str:
     """The annotation of what a function returns, empty without one."""
-    return str(getattr(function, "__annotations__", {}).get("return", ""))
+    return name_type(getattr(function, "__annotations__", {}).get("return", ""))
 
 
 def first_sentence(of: object) -> str:

@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING
 from ..tree import Tree, WorkingTree
 from . import report_cache
 from .report import Checked, Report
-from .session import (
-    DEFAULTS,
-    CheckError,
-    Options,
-    Progress,
-    link_workspace,
-    read_workspace,
-)
+from .session import DEFAULTS, CheckError, Options, Progress, link_workspace, read_workspace
 
 if TYPE_CHECKING:
     from ..rules.rule import Finding

@@ -1,7 +1,5 @@
 """What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
@@ -169,8 +167,6 @@ class _Reading:
         kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
         return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)
 
-    # Downstream
-
     def downstream(
         self, nodes: Iterable[str], out: Iterable[_Out], reach: DownstreamSearch, first: Iterable[Hop] = ()
     ) -> tuple[Hop, ...]:
@@ -204,8 +200,6 @@ class _Reading:
     def hop(self, step: Step, came: str = "") -> Hop:
         return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
 
-    # Messages
-
     def messages(self) -> Iterator[Effect]:
         for change in message_changes(self.workspace, self.base):
             gone = change.change == "removed"
@@ -228,8 +222,6 @@ class _Reading:
                 change.why, reached,
             )  # fmt: skip
 
-    # Publish statements
-
     def logic(self) -> Iterator[Effect]:
         for change in publishing(self.workspace, self.base):
             gone = change.kind == "gone"
@@ -250,8 +242,6 @@ class _Reading:
                 ", ".join(topics) or change.topic, change.package, change.path, change.line, nodes, topics, change.why,
                 self.downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
             )  # fmt: skip
-
-    # Topics
 
     def topics(self, told: Sequence[Effect]) -> Iterator[Effect]:
         """What is new, gone or of another type or quality at either end of a topic, save what was told already."""
@@ -320,8 +310,6 @@ class _Reading:
             one.role == edge.role and not one.topic and one.node == edge.node and (one.function, one.variable) in lines
             for one in other.endpoints
         )
-
-    # Callbacks
 
     def callbacks(self) -> Iterator[Effect]:
         publishes: dict[tuple[str, str], list[Publish]] = {}
@@ -430,9 +418,6 @@ def _declared(facts: FlowFile | None) -> object:
 
 def _decoded(data: bytes) -> str:
     return data.decode("utf-8", "replace")
-
-
-# Parts
 
 
 def chosen(

@@ -1,7 +1,5 @@
 """The message-flow graph of a workspace, and of its base: from a path to graphs."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the changes since a base reach in a workspace: from a path to nodes downstream."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Two machines: what differs between them, and what of it matters to a workspace, the most harmful first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple

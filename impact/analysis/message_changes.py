@@ -1,7 +1,5 @@
 """Message, service and action definitions that differ from the base's, and the types that hold them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -14,60 +14,29 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
-from msgspec import structs
 
 from ...edges.version import __version__
 from ..facts.store import encodable
 from ..rules.rule import Finding, Rule
 from ..source_keys import code_stamp
-from ..targets.evidence_record import Evidence
 from ..targets.snapshot import data_stamp, updated_folder
 from ..tree import WorkingTree
 from ..tree.paths import blob_id
 from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
-from .stored_fix import PackedFix, pack_fix, unpack_fix
 
 if TYPE_CHECKING:
     from ..config import Config
     from ..facts.store import Store
 
 
-class _Found(msgspec.Struct, frozen=True, array_like=True):
-    """A finding as stored: the fields of Finding in their order, its fix packed."""
-
-    rule: str
-    severity: str
-    package: str
-    path: str
-    line: int
-    column: int
-    subject: str
-    targets: tuple[str, ...]
-    message: str
-    help: str
-    new: bool
-    fingerprint: str
-    fix: PackedFix
-    evidence: Evidence | None
-    repeated: bool
-
-    def finding(self) -> Finding:
-        """The finding. Raises as unpack_fix() does."""
-        return Finding(*structs.astuple(self))._replace(fix=unpack_fix(self.fix))
-
-
-def _pack(findings: Sequence[Finding]) -> tuple[_Found, ...]:
-    return tuple(_Found(*finding._replace(fix=pack_fix(finding.fix))) for finding in findings)  # type: ignore[arg-type]
-
-
 class _Kept(msgspec.Struct, frozen=True, array_like=True):
     """A report as stored. rules: names of those that could speak. originals: files that fixes change, with the ids of
     their content."""
 
-    findings: tuple[_Found, ...]
-    suppressed: tuple[_Found, ...]
-    known: tuple[_Found, ...]
+    findings: tuple[Finding, ...]
+    suppressed: tuple[Finding, ...]
+    known: tuple[Finding, ...]
     coverage: Coverage
     packages: tuple[ReportedPackage, ...]
     rules: tuple[str, ...]
@@ -148,11 +117,8 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         return None
     try:
         kept = msgspec.msgpack.decode(data, type=_Kept)
-        findings, suppressed, known = (
-            tuple(one.finding() for one in those) for those in (kept.findings, kept.suppressed, kept.known)
-        )
         originals = {file: read.tree.read(file) for file, _ in kept.originals}
-    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError, OSError):
+    except (msgspec.MsgspecError, UnicodeDecodeError, OSError):
         return None
     if any(blob_id(originals[file]) != content for file, content in kept.originals):
         return None  # it has just been written to
@@ -161,11 +127,11 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         version=__version__,
         data=targets[0].target.data_date if targets else "",
         targets=tuple(report_target(chosen, notes if i == 0 else ()) for i, chosen in enumerate(targets)),
-        findings=findings,
+        findings=kept.findings,
         coverage=kept.coverage,
         packages=kept.packages,
-        suppressed=suppressed,
-        known=known,
+        suppressed=kept.suppressed,
+        known=kept.known,
         rules=_RulesNamed(kept.rules),
         seconds=time.perf_counter() - started,
         excerpt=SourceLines(make_reader(read.tree)).excerpt,
@@ -178,9 +144,9 @@ def store_report(read: Read, key: bytes, checked: Checked) -> None:
     """Keeps a report for later runs. key: the report_key() of what it was made from."""
     report = checked.report
     kept = _Kept(
-        _pack(report.findings),
-        _pack(report.suppressed),
-        _pack(report.known),
+        tuple(report.findings),
+        tuple(report.suppressed),
+        tuple(report.known),
         report.coverage,
         report.packages,
         tuple(rule.name for rule in report.rules),

@@ -21,36 +21,24 @@ from ..model.package import Watched
 from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
-from ..rules.severity import Doubt
 from ..source_keys import code_stamp
 from ..targets.availability import horizons
 from ..targets.changes import looked_for
-from ..targets.evidence_record import Evidence
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
 from ..targets.target import ChangeInForce, Target
-from .stored_fix import PackedFix, pack_fix, unpack_fix
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic]
 
 
 class _Stored(msgspec.Struct, frozen=True, array_like=True):
-    """A diagnostic as stored: its rule, its place taken apart, its doubts by name, its cures as (kind, fields)."""
+    """A diagnostic as stored: its rule, its place, and all else."""
 
     rule: str
-    path: str
-    line: int
-    column: int
-    subject: str
-    package: str
-    severity: str
-    fix: PackedFix
-    evidence: Evidence | None
-    kind: str
-    data: dict[str, str | int | float | tuple[str, ...]]
-    doubts: tuple[str, ...] = ()
+    at: At
+    diagnostic: Diagnostic
 
 
 class _Judgement(msgspec.Struct, frozen=True, array_like=True):
@@ -131,7 +119,7 @@ def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded])
 def _keep(
     store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
 ) -> None:
-    stored = tuple(_packed(rule, diagnostic) for rule, diagnostic in diagnostics)
+    stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
 
 
@@ -141,8 +129,9 @@ def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[
         return None
     try:
         judgement = msgspec.msgpack.decode(data, type=_Judgement)
-        return [(stored.rule, _unpacked(stored)) for stored in judgement.diagnostics], judgement.unresolved
-    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError):
+        found = [(stored.rule, stored.diagnostic._replace(at=stored.at)) for stored in judgement.diagnostics]
+        return found, judgement.unresolved
+    except (msgspec.MsgspecError, UnicodeDecodeError):
         return None
 
 
@@ -162,28 +151,5 @@ def load_changes(store: Store, target: Target) -> None:
         store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
 
 
-def _packed(rule: str, diagnostic: Diagnostic) -> _Stored:
-    at = diagnostic.at
-    return _Stored(
-        rule,
-        getattr(at, "path", ""),
-        getattr(at, "line", 0),
-        getattr(at, "column", 0),
-        diagnostic.subject,
-        diagnostic.package,
-        diagnostic.severity,
-        pack_fix(diagnostic.fix),
-        diagnostic.evidence,
-        diagnostic.kind,
-        dict(diagnostic.data),
-        tuple(doubt.name for doubt in diagnostic.doubts if isinstance(doubt, Doubt)),
-    )
-
-
-def _unpacked(stored: _Stored) -> Diagnostic:
-    at = At(stored.path, stored.line, stored.column)
-    doubts = tuple(Doubt[name] for name in stored.doubts)
-    return Diagnostic(
-        at, stored.subject, stored.package, stored.data, stored.kind, doubts, stored.severity,
-        unpack_fix(stored.fix), stored.evidence,
-    )
+def _place_of(at: object) -> At:
+    return At(getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0))

@@ -1,7 +1,5 @@
 """What holds on one target and not on another: one workspace, read once and judged on both."""
 
-from __future__ import annotations
-
 import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence

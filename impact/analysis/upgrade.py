@@ -1,7 +1,5 @@
 """What an upgrade breaks, as a list of work: a workspace on the target it leaves and on the one it moves to."""
 
-from __future__ import annotations
-
 import shlex
 import time
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """`rosimpact why NAME`: who provides a name on a target, since when, who uses it, and whether that is safe."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from contextlib import suppress

@@ -1,12 +1,11 @@
 """The command line: options and help; each command imports what it needs when it runs."""
 
-from __future__ import annotations
-
 import gc
 import io
 import sys
 import warnings
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -49,21 +48,22 @@ app.add_typer(study_app, name="study")
 app.add_typer(dev_app, name="dev", hidden=True)
 
 
+def _schema_option(report: str) -> Any:
+    """The option that prints the JSON schema of a report. report: its module."""
+
+    def show(value: bool) -> None:
+        if value:
+            from .output import print_answer
+
+            print_answer(import_module(f"...report.{report}", __name__).schema(), "json")
+            raise typer.Exit()
+
+    return typer.Option("--schema", callback=show, is_eager=True, help="Print the JSON schema of --format json.")
+
+
 _FOLLOW_LINKS = "Follow links that lead out of the workspace. Do not use it on workspaces that you do not trust."
 
-
-def _print_schema(value: bool) -> None:
-    if value:
-        from . import check as command
-
-        raise typer.Exit(command.schema())
-
-
-def _print_graph_schema(value: bool) -> None:
-    if value:
-        from . import graph as command
-
-        raise typer.Exit(command.graph_schema())
+_FAIL_ON = "Lowest severity that gives exit status 1: error (the default), warning, note, never."
 
 
 @app.command()
@@ -101,9 +101,7 @@ def check(
         list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
     ] = None,
     ignore: Annotated[list[str] | None, typer.Option(help="Skip these rules or families.")] = None,
-    fail_on: Annotated[
-        str, typer.Option(help="Lowest severity that gives exit status 1: error (the default), warning, note, never.")
-    ] = "",
+    fail_on: Annotated[str, typer.Option(help=_FAIL_ON)] = "",
     notes: Annotated[bool, typer.Option("--notes", help="Also show notes in the text report.")] = False,
     preview: Annotated[
         bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")
@@ -124,10 +122,7 @@ def check(
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
-    schema: Annotated[
-        bool,
-        typer.Option("--schema", callback=_print_schema, is_eager=True, help="Print the JSON schema of --format json."),
-    ] = False,
+    schema: Annotated[bool, _schema_option("json")] = False,
 ) -> None:
     """Report what breaks, on which machine, where, and what to do.
 
@@ -145,13 +140,6 @@ def check(
     )  # fmt: skip
 
 
-def _print_upgrade_schema(value: bool) -> None:
-    if value:
-        from . import upgrade as command
-
-        raise typer.Exit(command.upgrade_schema())
-
-
 @app.command()
 def upgrade(
     from_: Annotated[str, typer.Option("--from", help="The current target, in any form that --target accepts.")],
@@ -163,15 +151,8 @@ def upgrade(
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
-    fail_on: Annotated[
-        str, typer.Option(help="Lowest severity that gives exit status 1: error (the default), warning, note, never.")
-    ] = "",
-    schema: Annotated[
-        bool,
-        typer.Option(
-            "--schema", callback=_print_upgrade_schema, is_eager=True, help="Print the JSON schema of --format json."
-        ),
-    ] = False,
+    fail_on: Annotated[str, typer.Option(help=_FAIL_ON)] = "",
+    schema: Annotated[bool, _schema_option("upgrade")] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
@@ -242,12 +223,7 @@ def graph(
     all: Annotated[
         bool, typer.Option("--all", help="Also show hidden names and everything that was not resolved.")
     ] = False,
-    schema: Annotated[
-        bool,
-        typer.Option(
-            "--schema", callback=_print_graph_schema, is_eager=True, help="Print the JSON schema of --format json."
-        ),
-    ] = False,
+    schema: Annotated[bool, _schema_option("graph.json")] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
@@ -261,13 +237,6 @@ def graph(
             output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
     )  # fmt: skip
-
-
-def _print_impact_schema(value: bool) -> None:
-    if value:
-        from . import impact as command
-
-        raise typer.Exit(command.impact_schema())
 
 
 @app.command()
@@ -292,12 +261,7 @@ def impact(
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
     all: Annotated[bool, typer.Option("--all", help="List every affected node and all unresolved calls.")] = False,
-    schema: Annotated[
-        bool,
-        typer.Option(
-            "--schema", callback=_print_impact_schema, is_eager=True, help="Print the JSON schema of --format json."
-        ),
-    ] = False,
+    schema: Annotated[bool, _schema_option("impact")] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
@@ -359,13 +323,6 @@ def env_capture(
     raise typer.Exit(command.env_capture(output))
 
 
-def _print_env_diff_schema(value: bool) -> None:
-    if value:
-        from . import env as command
-
-        raise typer.Exit(command.env_diff_schema())
-
-
 @env_app.command("diff")
 def env_diff(
     first: Annotated[str, typer.Argument(help="A target, in any form that --target accepts.")],
@@ -373,12 +330,7 @@ def env_diff(
     path: Annotated[Path | None, typer.Argument(help="A workspace: show which differences matter to it.")] = None,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    schema: Annotated[
-        bool,
-        typer.Option(
-            "--schema", callback=_print_env_diff_schema, is_eager=True, help="Print the JSON schema of --format json."
-        ),
-    ] = False,
+    schema: Annotated[bool, _schema_option("machines")] = False,
 ) -> None:
     """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
     from . import env as command

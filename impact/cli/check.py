@@ -1,19 +1,11 @@
 """rosimpact check."""
 
-from __future__ import annotations
-
 import os
 import sys
 from contextlib import suppress
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    counted,
-    is_obeyed,
-    run_command,
-    say,
-)
+from ...edges.console import UserError, counted, is_obeyed, run_command, say
 from ...edges.files import read_file
 from ...edges.limits import limits
 from ...edges.version import __version__
@@ -24,15 +16,7 @@ from ..analysis.report import Coverage, Report
 from ..analysis.session import Options
 from ..report.style import PLAIN, style_for
 from ..tree import WorkingTree, shown
-from .output import (
-    PARSED_SO_FAR,
-    check_output,
-    deliver,
-    one_of,
-    print_answer,
-    progress_bar,
-    save,
-)
+from .output import PARSED_SO_FAR, check_output, deliver, one_of, print_answer, progress_bar, save
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
@@ -226,11 +210,3 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
     else:
         from ..report import html as reporter
     return reporter.render(report)
-
-
-def schema() -> int:
-    """Prints the JSON schema of the JSON report."""
-    from ..report.json import schema as text
-
-    print_answer(text(), "json")
-    return 0

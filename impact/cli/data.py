@@ -1,22 +1,9 @@
 """rosimpact data."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from ...edges.console import (
-    counted,
-    escape_json,
-    run_command,
-    say,
-    steps,
-)
-from .output import (
-    READ_SO_FAR,
-    TEXT_OR_JSON,
-    deliver_answer,
-    print_answer,
-)
+from ...edges.console import counted, escape_json, run_command, say, steps
+from .output import READ_SO_FAR, TEXT_OR_JSON, deliver_answer, print_answer
 
 
 def data_status(format: str = "text") -> int:

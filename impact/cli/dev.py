@@ -1,7 +1,5 @@
 """`rosimpact dev`: for people who work on rosimpact itself; CONTRIBUTING.md says how."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

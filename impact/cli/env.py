@@ -1,21 +1,10 @@
 """rosimpact env."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from ...edges.console import (
-    run_command,
-    say,
-)
+from ...edges.console import run_command, say
 from ...edges.version import __version__
-from .output import (
-    check_output,
-    deliver,
-    deliver_answer,
-    print_answer,
-    style_of,
-)
+from .output import check_output, deliver, deliver_answer, style_of
 
 
 def env_capture(output: Path | None) -> int:
@@ -34,14 +23,6 @@ def env_capture(output: Path | None) -> int:
         return 0
 
     return run_command(work, "interrupted; nothing was written", "this machine")
-
-
-def env_diff_schema() -> int:
-    """Prints the JSON schema of the JSON of `env diff`."""
-    from ..report.machines import schema as text
-
-    print_answer(text(), "json")
-    return 0
 
 
 def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None = None) -> int:

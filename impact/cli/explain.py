@@ -1,13 +1,7 @@
 """rosimpact explain."""
 
-from __future__ import annotations
-
-from ...edges.console import (
-    say,
-)
-from .output import (
-    deliver_answer,
-)
+from ...edges.console import say
+from .output import deliver_answer
 
 
 def explain(name: str | None) -> int:

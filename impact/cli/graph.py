@@ -1,29 +1,11 @@
 """rosimpact graph."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-)
-from .output import (
-    deliver_answer,
-    print_answer,
-    progress_bar,
-    say_notes,
-    style_of,
-)
+from ...edges.console import UserError
+from .output import deliver_answer, progress_bar, say_notes, style_of
 
 GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
-
-
-def graph_schema() -> int:
-    """Prints the JSON schema of the graph's JSON."""
-    from ..report.graph.json import schema as text
-
-    print_answer(text(), "json")
-    return 0
 
 
 def graph(

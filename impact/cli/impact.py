@@ -1,30 +1,12 @@
 """rosimpact impact."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-)
+from ...edges.console import UserError
 from ...edges.version import __version__
-from .output import (
-    deliver_answer,
-    print_answer,
-    progress_bar,
-    say_notes,
-    style_of,
-)
+from .output import deliver_answer, progress_bar, say_notes, style_of
 
 IMPACT_FORMATS = ("text", "json", "markdown")
-
-
-def impact_schema() -> int:
-    """Prints the JSON schema of the JSON of `impact`."""
-    from ..report.impact import schema as text
-
-    print_answer(text(), "json")
-    return 0
 
 
 def impact(

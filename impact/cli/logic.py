@@ -1,20 +1,11 @@
 """rosimpact logic."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    steps,
-)
+from ...edges.console import UserError, steps
 from ...edges.version import __version__
-from .output import (
-    deliver_answer,
-    say_notes,
-    style_of,
-)
+from .output import deliver_answer, say_notes, style_of
 
 LOGIC_FORMATS = ("text", "json", "html")
 

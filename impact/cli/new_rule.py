@@ -1,7 +1,5 @@
 """Lays out a rule: its module and its first file of cases, which work and are to be edited."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -33,21 +31,18 @@ Not reported
 
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
-    scope="target",
     severity="warning",
     preview=True,
     texts=Text("`{{package}}` exports `{{subject}}`", help="remove it"),
 )
-def {function}(view: TargetView):
-    for package in view:
-        for export in package.manifest.exports:
-            if export.tag != "{subject}":
-                continue
+def {function}(view: TargetView, package: Package):
+    for export in package.manifest.exports:
+        if export.tag == "{subject}":
             yield Diagnostic(At(package.digest.manifest_path, export.line), export.tag, package.name)
 '''
 CASES = """# {name}

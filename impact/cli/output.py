@@ -1,23 +1,12 @@
 """What every command does with its answer: checks formats, prints or saves, says notes, shows progress."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    rewrite,
-    run_command,
-    say,
-    visible,
-    write,
-    write_exactly,
-    write_json,
-)
+from ...edges.console import UserError, rewrite, run_command, say, visible, write, write_exactly, write_json
 from ...edges.files import check_writable_path, outermost, write_file
 from ..report.style import PLAIN, Style, style_for
 

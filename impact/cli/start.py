@@ -1,7 +1,5 @@
 """Where the program starts: as little as possible before interrupts and failures of the start itself are answered."""
 
-from __future__ import annotations
-
 import os
 import sys
 

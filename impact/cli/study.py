@@ -1,7 +1,5 @@
 """`rosimpact study`: the command line of the study; thin, imports late."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,23 +1,12 @@
 """rosimpact surface."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path
 
-from ...edges.console import (
-    UserError,
-    counted,
-    steps,
-)
+from ...edges.console import UserError, counted, steps
 from ...edges.version import __version__
-from .output import (
-    check_output,
-    deliver_answer,
-    say_notes,
-    style_of,
-)
+from .output import check_output, deliver_answer, say_notes, style_of
 
 
 def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:

@@ -1,27 +1,11 @@
 """rosimpact upgrade."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ..analysis.findings import fails
 from ..analysis.session import Options
 from .check import FAIL_ON
-from .output import (
-    deliver_answer,
-    one_of,
-    print_answer,
-    progress_bar,
-    style_of,
-)
-
-
-def upgrade_schema() -> int:
-    """Prints the JSON schema of the JSON of `upgrade`."""
-    from ..report.upgrade import schema as text
-
-    print_answer(text(), "json")
-    return 0
+from .output import deliver_answer, one_of, progress_bar, style_of
 
 
 def upgrade(

@@ -1,16 +1,9 @@
 """rosimpact why."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from ...edges.console import (
-    json_text,
-)
-from .output import (
-    TEXT_OR_JSON,
-    deliver_answer,
-)
+from ...edges.console import json_text
+from .output import TEXT_OR_JSON, deliver_answer
 
 
 def why(

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
+from ...edges.memory import cached_method
 from ..targets.surface.offers import Standing, standing_at
 from ..targets.surface.offers_cpp import (
     callable_forms,
@@ -387,13 +388,8 @@ class Vocabulary:
     ):
         self.home = home
         self._changes, self._ros = changes, ros
-        self._types: dict[tuple[str, str, str], tuple[str, frozenset[str]]] = {}
         self._known: dict[str, PackageNames] = {}
-        self._by_last: dict[str, tuple[str, ...]] = {}
-        self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
         self._speakers: dict[str, frozenset[str]] = {}
-        self._constructors: dict[str, tuple[str, ...]] = {}
-        self._of_classes: dict[str, bool] = {}
         self._around: dict[str, tuple[bool, frozenset[str]]] = {}
         waiting = list(packages)
         for package in waiting:  # classes of other packages come along with what is derived from them
@@ -418,15 +414,13 @@ class Vocabulary:
                 known[word] = any(one.names[full].matters for one in self._wanted for full in one.by_last.get(word, ()))
         return {word for word in words if known[word]}
 
+    @cached_method
     def by_last(self, word: str) -> tuple[str, ...]:
         """Changing names that end so and of which a use can matter."""
-        known = self._by_last.get(word)
-        if known is None:
-            names = (
-                name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters
-            )
-            known = self._by_last[word] = tuple(dict.fromkeys(names))
-        return known
+        names = (
+            name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters
+        )
+        return tuple(dict.fromkeys(names))
 
     def knows(self, package: str) -> bool:
         """Whether a package's names are among these."""
@@ -447,35 +441,30 @@ class Vocabulary:
             found.extend(base for base in self.bases(one) if base not in found)
         return found
 
+    @cached_method
     def member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
         """The changing name that a member of a class is, with the packages of the classes in between."""
-        key = full, last
-        if key not in self._members:
-            between: list[str] = []
-            found = None
-            for one in self.line(full):
-                name = f"{one}::{last}"
-                if name in self.names:
-                    found = name, tuple(dict.fromkeys(between))
-                    break
-                between.append(self.classes.get(one) or "")
-            self._members[key] = found
-        return self._members[key]
+        between: list[str] = []
+        found = None
+        for one in self.line(full):
+            name = f"{one}::{last}"
+            if name in self.names:
+                found = name, tuple(dict.fromkeys(between))
+                break
+            between.append(self.classes.get(one) or "")
+        return found
 
+    @cached_method
     def types_of(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:
         """The class that declares a member of a class, itself or a base of it, and the member's types as written
         there, see Changes.types(); empty ones where none does. kind: `function` for what it gives back, `variable`,
         `alias`."""
-        key = full, last, kind
-        if key not in self._types:
-            self._types[key] = "", frozenset()
-            for one in self.line(full):
-                package = self.classes.get(one)
-                types = self._changes.types(package, self._ros, f"{one}::{last}", _KINDS[kind]) if package else None
-                if types:
-                    self._types[key] = one, types
-                    break
-        return self._types[key]
+        for one in self.line(full):
+            package = self.classes.get(one)
+            types = self._changes.types(package, self._ros, f"{one}::{last}", _KINDS[kind]) if package else None
+            if types:
+                return one, types
+        return "", frozenset()
 
     def speakers_of(self, word: str) -> frozenset[str]:
         """Last parts of the classes that have a changing member of this name, and of those derived from them."""
@@ -496,22 +485,16 @@ class Vocabulary:
         owners = (owner for known in self._wanted for owner in known.pure)
         return frozenset().union(*(self.speakers(owner) for owner in owners))
 
+    @cached_method
     def constructors(self, word: str) -> tuple[str, ...]:
         """Changing constructors of classes whose name ends so."""
-        known = self._constructors.get(word)
-        if known is None:
-            ending = f"::{word}::{word}"
-            known = tuple(name for name in self.by_last(word) if f"::{name}".endswith(ending))
-            self._constructors[word] = known
-        return known
+        ending = f"::{word}::{word}"
+        return tuple(name for name in self.by_last(word) if f"::{name}".endswith(ending))
 
+    @cached_method
     def of_classes(self, word: str) -> bool:
         """Whether a member of a class is so called."""
-        known = self._of_classes.get(word)
-        if known is None:
-            known = any(name.rpartition("::")[0] in self.classes for name in self.by_last(word))
-            self._of_classes[word] = known
-        return known
+        return any(name.rpartition("::")[0] in self.classes for name in self.by_last(word))
 
     def can_be_meant(self, word: str, near: Iterable[frozenset[str]]) -> bool:
         """Whether a word can be the last part of a name that is looked for. near: the words of the file, and of each

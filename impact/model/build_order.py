@@ -1,7 +1,5 @@
 """The order in which a workspace's packages are built: catkin_pkg's, which catkin follows."""
 
-from __future__ import annotations
-
 from .view import TargetView
 
 # What catkin_pkg calls the dependencies of a kind.

@@ -10,8 +10,6 @@ package_ROS2.xml, to be copied by a script before the build, is a package, and s
 package that is reached on two ways is reported where it really lies.
 """
 
-from __future__ import annotations
-
 import fnmatch
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Which paths git ignores, by the patterns of .gitignore files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from functools import lru_cache

@@ -248,9 +248,6 @@ def _reason(error: OSError) -> str:
     return f"cannot be read: {(error.strerror or type(error).__name__).lower()}"
 
 
-# The workspace, and the machines
-
-
 def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, jobs: int | None = None) -> InstallSpace:
     """The install space of a workspace whose root is given. Raises as read_installed() does."""
     owners: dict[str, str] = {}
@@ -321,9 +318,6 @@ def _names_in(folders: Iterable[str]) -> frozenset[str]:
         except OSError:
             continue
     return frozenset(names)
-
-
-# Whose a file is
 
 
 class _Owner:

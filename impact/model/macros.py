@@ -4,8 +4,6 @@
 targets pass on with their definitions is not followed.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Container, Iterable
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Names that differ by a slip of the keyboard."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 

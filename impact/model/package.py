@@ -502,8 +502,6 @@ class _Join:
             settings=tuple(self.settings(parameters, launches)),
         )
 
-    # -- which file is compiled by what ------------------------------------------------------------------------------
-
     def answers(self, include: str, includer: str) -> str | None:
         """The file of the package that an include names, or None."""
         if include.startswith("."):
@@ -582,8 +580,6 @@ class _Join:
             if is_header(path) and (path in single or any(path.startswith(f + "/") if f else True for f in folders)):
                 found.append(path)
         return found
-
-    # -- what C++ files need ---------------------------------------------------------------------------------------
 
     def sources(self, roles):
         includes: list[IncludeUse] = []
@@ -967,8 +963,6 @@ class _Join:
         if unknown:
             known.update(self.look(unknown, "declared_cpp"))
         return (known[path] for path in paths if path in known)
-
-    # -- what Python files need ------------------------------------------------------------------------------------
 
     def python(self, files: dict[str, PythonFile]):
         modules: set[str] = set()

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
+from ...edges.memory import cached_method
+
 if TYPE_CHECKING:
     from .view import TargetView
     from .workspace import Package
@@ -37,47 +39,34 @@ class Roles:
 
     def __init__(self, view: TargetView):
         self._view = view
-        self._exports: dict[str, tuple[str, ...]] = {}
-        self._promises: dict[str, tuple[str, ...]] = {}
-        self._at_hand: dict[tuple[str, str], frozenset[str]] = {}
-        self._handed_on: dict[tuple[str, str, bool], frozenset[str]] = {}
-        self._on_farm: dict[str, frozenset[str]] = {}
 
+    @cached_method
     def at_hand(self, package: Package, role: str) -> frozenset[str]:
         """Everything that is installed along with what a package declares for a role: a key of KINDS."""
-        known = self._at_hand.get((package.name, role))
-        if known is None:
-            declared = self._view.declared(package)
-            start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-            known = self._at_hand[package.name, role] = self._view.spread(start) | {package.name}
-        return known
+        declared = self._view.declared(package)
+        start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
+        return self._view.spread(start) | {package.name}
 
     @property
     def farm_makes_tests(self) -> bool:
         """Whether the build farm configures packages with tests, as it did before bloom 0.11.0."""
         return self._view.target.date < _FARM_MAKES_NO_TESTS
 
+    @cached_method
     def on_build_farm(self, package: Package) -> frozenset[str]:
         """Everything that may be on the machine which builds the package's release: what is declared to build and to
         test, but not what is declared to run. Source: bloom's Build-Depends, without those for tests from 0.11.0 on."""
-        known = self._on_farm.get(package.name)
-        if known is None:
-            view = self._view
-            start = [name for name, kinds in view.declared(package).items() if kinds & _BUILD_DEPENDS]
-            known = view.widest_spread(start).union(view.preinstalled, (package.name,))
-            self._on_farm[package.name] = known
-        return known
+        view = self._view
+        start = [name for name, kinds in view.declared(package).items() if kinds & _BUILD_DEPENDS]
+        return view.widest_spread(start).union(view.preinstalled, (package.name,))
 
+    @cached_method
     def handed_on(self, package: Package, role: str, promised: bool) -> frozenset[str]:
         """What a package declares for a role, and what that exports in turn. promised: what its manifests promise to
         export counts as well as what its CMake does."""
-        key = package.name, role, promised
-        known = self._handed_on.get(key)
-        if known is None:
-            declared = self._view.declared(package)
-            start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-            known = self._handed_on[key] = _reached(start, self._either if promised else self._by_cmake)
-        return known
+        declared = self._view.declared(package)
+        start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
+        return _reached(start, self._either if promised else self._by_cmake)
 
     def _either(self, name: str) -> tuple[str, ...]:
         return (*self.exports(name), *self.promises(name))
@@ -102,20 +91,16 @@ class Roles:
             return name in self._view.spread([tool])
         return name == tool or name in self._view.installed_with(tool)
 
+    @cached_method
     def exports(self, name: str) -> tuple[str, ...]:
         """What a package hands on by CMake; by its manifest where its CMake is not known."""
-        known = self._exports.get(name)
-        if known is None:
-            known = self._exports[name] = tuple(self._exported(name))
-        return known
+        return tuple(self._exported(name))
 
+    @cached_method
     def promises(self, name: str) -> tuple[str, ...]:
         """What the manifest of a package promises to hand on. A manifest of format 1 calls both that and what is needed
         to run `run_depend`, which promises nothing."""
-        known = self._promises.get(name)
-        if known is None:
-            known = self._promises[name] = tuple(self._promised(name))
-        return known
+        return tuple(self._promised(name))
 
     def _exported(self, name: str) -> Iterable[str]:
         view = self._view

@@ -5,8 +5,6 @@ Whose a value of a file of ROS 2 parameters is, is told by the `plugin:` beside 
 manager has for a node of that name, or by the name of the node, which a launch file or the program's own name explains.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple

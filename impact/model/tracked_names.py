@@ -1,7 +1,5 @@
 """The names that rules look out for, gathered from the tables of known changes."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from functools import cache

@@ -41,6 +41,8 @@ from .workspace import Package, Workspace
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
+
+
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
@@ -162,8 +164,6 @@ class TargetView:
                 continue
             yield package
 
-    # -- conditions --------------------------------------------------------------------------------------------------
-
     @cached_property
     def environment(self) -> Environment:
         """What conditions are evaluated against."""
@@ -260,8 +260,6 @@ class TargetView:
     def manifest_place(self, package: Package, dependency) -> At:
         """Where a dependency is declared."""
         return At(package.digest.manifest_path, dependency.line, dependency.column)
-
-    # -- what is known of the target -------------------------------------------------------------------------------
 
     @cached_property
     def known_names(self) -> SpellingIndex:
@@ -626,8 +624,6 @@ class TargetView:
         roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
 
-    # -- declared dependencies -----------------------------------------------------------------------------------------
-
     def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
         known = self._declared.get(package.name)
@@ -850,8 +846,6 @@ class TargetView:
                 self._reached[id(names)] = known
         return known[1], known[2]
 
-    # -- who provides --------------------------------------------------------------------------------------------------
-
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
         known = self._headers.get(path)
@@ -960,8 +954,6 @@ class TargetView:
                     found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
             known = self._modules[module] = tuple(found)
         return known
-
-    # -- what is used --------------------------------------------------------------------------------------------------
 
     def needs(self, package: Package) -> tuple[Need, ...]:
         """Everything a package uses of others on this target."""
@@ -1076,7 +1068,6 @@ class TargetView:
             self.certain(found.conditions),
             found.required,
         )
-
 
     def _parts_asked(self, found: FoundPackage, testing: bool, certain: bool) -> Iterator[Need]:
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,

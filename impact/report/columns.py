@@ -1,7 +1,5 @@
 """Lines of text that fit a terminal: broken between pieces first, then between words; paths lose their middle."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

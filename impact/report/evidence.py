@@ -1,7 +1,5 @@
 """The evidence of a finding as the reports show it: a few lines for a person, an object for programs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..rules.rule import Finding

@@ -4,8 +4,6 @@ Syntax and escapes: docs.github.com, "Workflow commands for GitHub Actions". Git
 of each level for one step; what goes beyond is printed as plain lines and told in the step summary.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from ...edges.console import counted, visible, visible_lines

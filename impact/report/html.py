@@ -1,7 +1,5 @@
 """The report as one self-contained page: it works from a file, loads nothing and runs no code but its own."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

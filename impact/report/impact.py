@@ -1,7 +1,5 @@
 """What a change reaches, as text, JSON and Markdown."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence

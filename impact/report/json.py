@@ -1,7 +1,5 @@
 """The JSON report: schema 1, described by findings.schema.json beside this file and in docs/findings.md."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Changes of the logic of publishing as text for a person, and as JSON."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence

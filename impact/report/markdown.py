@@ -1,7 +1,5 @@
 """The report as a comment for a pull request: ten lines at most."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Text put into Markdown so that nothing in it acts: no link, mention, image or markup."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

@@ -3,8 +3,6 @@
 A page is one file: it works from a disk, loads nothing and runs no code but its own.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import html

@@ -1,7 +1,5 @@
 """The report as SARIF 2.1.0 (OASIS standard), as code scanning services read it."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable

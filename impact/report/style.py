@@ -1,7 +1,5 @@
 """How text looks on a terminal: colours, symbols, width."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """What a package offers, and what changed between two versions of it, as text, JSON and Markdown."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -38,8 +36,6 @@ class SurfaceDifference(NamedTuple):
     new: VersionSource
     changes: dict[str, tuple[VersionChange, ...]]
 
-
-# -- differences -------------------------------------------------------------------------------------------------------
 
 _GROUPS = ("breaks", "may break", "deprecated", "changed", "added")
 _TITLES = {
@@ -189,9 +185,6 @@ def diff_json(found: SurfaceDifference, tool: str) -> str:
 
 def _json(value: Any) -> str:
     return json_text(msgspec.to_builtins(value)) + "\n"
-
-
-# -- one surface -------------------------------------------------------------------------------------------------------
 
 
 _NONE: Mapping[str, str] = {}

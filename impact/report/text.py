@@ -1,7 +1,5 @@
 """The report for a person at a terminal: targets, findings by package with code excerpts, matrix, one summary line."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 
 from ...edges.console import counted, cut_visibly, visible

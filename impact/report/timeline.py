@@ -1,7 +1,5 @@
 """Changes of the logic of publishing as one self-contained page: a timeline that can be searched and filtered."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -66,9 +66,6 @@ def _counts(findings: Sequence[Finding]) -> str:
     return ", ".join(counted(n, severity) for severity, n in count_by_severity(findings).items() if n)
 
 
-# -- text --------------------------------------------------------------------------------------------------------------
-
-
 def text(found: Upgrade, style: Style) -> str:
     """The list of work for people at a terminal."""
     role = "good" if not found.breaks else _worst(found.breaks)
@@ -111,9 +108,6 @@ def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
     if folders.get(package, "") not in ("", ".", package):
         title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[package])}")
     return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title
-
-
-# -- JSON --------------------------------------------------------------------------------------------------------------
 
 
 def as_json(found: Upgrade) -> str:
@@ -172,9 +166,6 @@ def _work(found: Upgrade, items: Iterable[UpgradeItem]) -> list[dict[str, Any]]:
 def schema() -> str:
     """The published JSON schema as text (draft 2020-12); docs/upgrade.schema.json holds it."""
     return json.schema_with("upgrade.schema.json")
-
-
-# -- page --------------------------------------------------------------------------------------------------------------
 
 
 def as_html(found: Upgrade) -> str:

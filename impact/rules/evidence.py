@@ -1,7 +1,5 @@
 """What several rules ask: what can be had on a target, by what name one declares it, what leads in a circle."""
 
-from __future__ import annotations
-
 from ..model.view import Need, TargetView
 from ..model.workspace import Package
 

@@ -1,7 +1,5 @@
 """The documentation of rules as `rosimpact explain` prints it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from difflib import get_close_matches
 from itertools import groupby

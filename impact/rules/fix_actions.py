@@ -1,11 +1,9 @@
 """What a rule proposes to change, by name and place. Rules see no bytes; fix.py makes byte edits of it."""
 
-from __future__ import annotations
-
-from typing import NamedTuple
+import msgspec
 
 
-class Declare(NamedTuple):
+class Declare(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Declare a dependency in a manifest. tag: as format 2 and 3 know it (`depend`, `exec_depend`, ...)."""
 
     path: str
@@ -13,7 +11,7 @@ class Declare(NamedTuple):
     tag: str = "depend"
 
 
-class Remove(NamedTuple):
+class Remove(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Take a dependency out of a manifest: one tag of it, or all when tag is empty."""
 
     path: str
@@ -21,7 +19,7 @@ class Remove(NamedTuple):
     tag: str = ""
 
 
-class Replace(NamedTuple):
+class Replace(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only one."""
 
     path: str
@@ -31,10 +29,22 @@ class Replace(NamedTuple):
     new: str
 
 
-class Insert(NamedTuple):
+class Insert(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Put lines behind a line (0: at the start of the file), with that line's indentation; in CMake, behind the command
     that the line belongs to. text: without a line end."""
 
     path: str
     line: int
     text: str
+
+
+class Edit(msgspec.Struct, frozen=True, array_like=True, tag=True):
+    """A replacement in one file, by byte offsets; start == end inserts."""
+
+    path: str
+    start: int
+    end: int
+    text: str
+
+
+FixAction = Edit | Declare | Remove | Replace | Insert

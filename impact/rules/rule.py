@@ -5,7 +5,6 @@ docstring. It is a generator, registered by `@rule`:
 
     @rule(
         scope="change",
-        severity="error",
         texts=Text("the field `{subject}` of `{definition}` was removed", help="keep the field for one release"),
     )
     def removed_field(workspace: Workspace, base: Workspace):
@@ -15,6 +14,7 @@ docstring. It is a generator, registered by `@rule`:
 Its scope says what it is called with, and how often:
 
     scope          called with                    when
+    package        view, package                  for each target, once with every package to report on
     target         view                           once for each target; it reports on the packages that the view
                                                   iterates over, which may be a part of the workspace
     workspace      workspace                      once: no target has a say in it
@@ -26,6 +26,9 @@ Its scope says what it is called with, and how often:
                                                   when there is an install space
     targets        views                          once, with all targets together; it yields (view, diagnostic)
 
+A rule of the scope `package` may yield Upcoming as well, which is rated package by package. All that a rule is written
+with, beside the model and the target, is imported from here.
+
 It yields diagnostics: data, not text. What differs between targets (a version, a date) is data of one diagnostic for
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
 """
@@ -34,29 +37,24 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
-from .fix_actions import Declare, Insert, Remove, Replace
-from .severity import Doubt, Together, severity
+from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
+from .severity import AT_RUN_TIME, EXPORTED, Doubt, Together, doubts_of_place, severity
 from .text import Text, Value
+from .upcoming import Upcoming, rate_upcoming
+
+__all__ = [
+    "AT_RUN_TIME", "EXPORTED", "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert",
+    "Remove", "Replace", "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "all_rules", "doubts_of_place",
+    "groups", "rate_upcoming", "rule", "severity",
+]  # fmt: skip
 
 SEVERITIES = ("note", "warning", "error")
-Scope = Literal["target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
-
-
-class Edit(NamedTuple):
-    """A replacement in one file, by byte offsets; start == end inserts."""
-
-    path: str
-    start: int
-    end: int
-    text: str
-
-
-FixAction = Edit | Declare | Remove | Replace | Insert
+Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
 
 class Diagnostic(NamedTuple):
@@ -176,7 +174,7 @@ _RULES: dict[str, Rule] = {}
 
 def rule(
     *,
-    scope: Scope = "target",
+    scope: Scope = "package",
     severity: Literal["note", "warning", "error"] = "error",
     doubts: tuple[Doubt, ...] = (),
     texts: Text | Mapping[str, Text] | None = None,
@@ -185,11 +183,11 @@ def rule(
 ):
     """Registers the decorated generator as a rule; the module's docstring tells how it is called.
 
-    severity: the highest that a finding of the rule can have, for what stops no build and no run however sure it is.
-    doubts: what speaks against that in every finding. texts: one template, or several by the kind of diagnostic.
-    group: the name of the rule that this check was a part of, so that settings, comments, baselines and fingerprints
-    which name that one go on to hold for this one. preview: it runs only when asked for, since its precision is not
-    measured yet.
+    scope: see the module; `package` is registered as `target`, with the loop over the packages. severity: the highest
+    that a finding of the rule can have, for what stops no build and no run however sure it is. doubts: what speaks
+    against that in every finding. texts: one template, or several by the kind of diagnostic. group: the name of the
+    rule that this check was a part of, so that settings, comments, baselines and fingerprints which name that one go on
+    to hold for this one. preview: it runs only when asked for, since its precision is not measured yet.
     """
     if texts is None:
         texts = {}
@@ -201,12 +199,19 @@ def rule(
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
         usual = _lowest(severity, doubts)
-        _RULES[name] = Rule(
-            name, parts[-2], usual, function, module.__doc__ or "", scope, preview, doubts, group, texts
-        )
+        run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
+        _RULES[name] = Rule(name, parts[-2], usual, run, module.__doc__ or "", called, preview, doubts, group, texts)
         return function
 
     return register
+
+
+def _run_on_packages(function: Callable[..., Iterable[Diagnostic | Upcoming]]) -> Callable[..., Iterator[Diagnostic]]:
+    def run(view: Iterable) -> Iterator[Diagnostic]:
+        for package in view:
+            yield from rate_upcoming(function(view, package))
+
+    return run
 
 
 def _lowest(most: str, doubts: tuple[Doubt, ...]) -> str:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 class Doubt(enum.Enum):
     """A reason why a finding may be less than an error, with the severity that it allows at most."""
 
+    allows: str
+
     # Of the place
     CONDITIONAL = "it stands under a condition of the build or launch that is not known to hold", "warning"
     OPTIONAL = "the build or the program is prepared for its absence", "warning"
@@ -49,8 +51,10 @@ class Doubt(enum.Enum):
     DEPRECATED = "it is there, and produces a warning", "note"
     REPEATED = "a warning says the same of another place already", "note"
 
-    def __init__(self, reason: str, allows: str):
-        self.reason, self.allows = reason, allows
+    def __new__(cls, reason: str, allows: str) -> Doubt:
+        self = object.__new__(cls)
+        self._value_, self.allows = reason, allows
+        return self
 
 
 _LADDER = ("note", "warning", "error")

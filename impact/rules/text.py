@@ -11,8 +11,6 @@ backticks is code, and stays so where there are several values. Formats:
 Where the value of a field differs between targets, each value names its targets: 0.36.2 (jazzy), 0.41.0 (rolling).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from string import Formatter

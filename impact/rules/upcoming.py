@@ -9,11 +9,13 @@ further ahead lacks.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..targets.symbol import Horizon
-from .rule import Diagnostic
 from .severity import Doubt, Together
+
+if TYPE_CHECKING:
+    from .rule import Diagnostic
 
 
 class Upcoming(NamedTuple):

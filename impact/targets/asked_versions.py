@@ -1,11 +1,10 @@
 """The versions of released packages that a run can say something about: what its targets have, and what an update of
 each of them brings. Uses that are alike on all of these need not be looked for."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 
+from ...edges.memory import cached_method
 from .availability import horizons
 from .target import Target
 
@@ -21,17 +20,14 @@ class AskedVersions:
             self._targets.extend((ahead.target, True) for ahead in horizons(target) if not ahead.platform)
         about = [(target.identity(), ahead) for target, ahead in self._targets]
         self.identity = hashlib.sha1(repr(about).encode()).hexdigest()
-        self._known: dict[tuple[str, int], tuple[tuple[str, bool], ...]] = {}
 
+    @cached_method
     def of(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
         """The versions of a package of a ROS generation, and of each whether only an update brings it; empty for one
         that no target has."""
-        key = package, ros
-        if key not in self._known:
-            found: dict[str, bool] = {}
-            for target, ahead in self._targets:
-                version = target.version(package) if target.ros == ros else None
-                if version is not None:
-                    found[version] = ahead and found.get(version, True)
-            self._known[key] = tuple(found.items())
-        return self._known[key]
+        found: dict[str, bool] = {}
+        for target, ahead in self._targets:
+            version = target.version(package) if target.ros == ros else None
+            if version is not None:
+                found[version] = ahead and found.get(version, True)
+        return tuple(found.items())

@@ -13,6 +13,7 @@ import difflib
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 
+from ...edges.memory import cached_method
 from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_of
 from .distro.known import known_distros
 from .evidence import evidence_of, of_offered
@@ -118,15 +119,22 @@ class Availabilities:
         self.offers = offers or Offers(target)
         self.providers = providers or default_providers()
         self._given = ahead
-        self._known: dict[Symbol, Availability] = {}
-        self._made_by: dict[str, frozenset[str]] = {}
 
+    @cached_method
     def of(self, symbol: Symbol) -> Availability:
         """How the target stands to a symbol, what is to come left out."""
-        known = self._known.get(symbol)
-        if known is None:
-            known = self._known[symbol] = self._of(symbol)
-        return known
+        if symbol.kind == "package":
+            return self._package(symbol)
+        if symbol.kind in ("field", "interface"):
+            return self._interface(symbol)
+        missing = None
+        for package in symbol.packages:
+            found = self._header(symbol, package) if symbol.kind == "header" else self._offered(symbol, package)
+            if found.state not in ("unknown", "removed", "not yet"):
+                return found
+            if found.state != "unknown":
+                missing = missing or found
+        return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
 
     def on_horizon(self, symbol: Symbol) -> Availability:
         """The same, and `upcoming` for what is there and is removed on the nearest horizon."""
@@ -144,22 +152,6 @@ class Availabilities:
         ahead = horizons(self.target) if self._given is None else self._given
         return [(one, Availabilities(one.target, providers=self.providers, ahead=())) for one in ahead]
 
-    def _of(self, symbol: Symbol) -> Availability:
-        if symbol.kind == "package":
-            return self._package(symbol)
-        if symbol.kind in ("field", "interface"):
-            return self._interface(symbol)
-        missing = None
-        for package in symbol.packages:
-            found = self._header(symbol, package) if symbol.kind == "header" else self._offered(symbol, package)
-            if found.state not in ("unknown", "removed", "not yet"):
-                return found
-            if found.state != "unknown":
-                missing = missing or found
-        return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
-
-    # Packages
-
     def _package(self, symbol: Symbol) -> Availability:
         target, name = self.target, symbol.name
         version = target.version(name)
@@ -174,8 +166,6 @@ class Availabilities:
         if not last or last not in DISTROS or target.distro not in DISTROS:
             return Availability(symbol, "unknown", name)
         return Availability(symbol, "removed" if DISTROS[last] < DISTROS[target.distro] else "not yet", name)
-
-    # Headers
 
     def _header(self, symbol: Symbol, package: str) -> Availability:
         version = self.target.version(package)
@@ -211,20 +201,16 @@ class Availabilities:
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
 
+    @cached_method
     def _made(self, offer: PackageOffer) -> frozenset[str]:
         """Headers of the stored version that its tree does not have: those that its build makes, and whatever its own
         headers include."""
-        known = self._made_by.get(offer.package)
-        if known is None:
-            found = {header.include for header in offer.build.headers}
-            included = self.offers.surfaces.included(offer.package, self.target.ros)
-            if included is not None:
-                for header in included.headers:
-                    found.update(one.path for one in included.written(header, offer.stored) or ())
-            known = self._made_by[offer.package] = frozenset(found)
-        return known
-
-    # What surfaces hold
+        found = {header.include for header in offer.build.headers}
+        included = self.offers.surfaces.included(offer.package, self.target.ros)
+        if included is not None:
+            for header in included.headers:
+                found.update(one.path for one in included.written(header, offer.stored) or ())
+        return frozenset(found)
 
     def _offered(self, symbol: Symbol, package: str) -> Availability:
         offer = self.offers.package(package)
@@ -257,8 +243,6 @@ class Availabilities:
         if side == PARAMETER:
             return name in offer.parameters
         return self.offers.there(side, name, offer.package)
-
-    # Interfaces and their fields
 
     def _interface(self, symbol: Symbol) -> Availability:
         name, *parts = symbol.name.split(".")
@@ -310,8 +294,6 @@ class Availabilities:
             if change.new and change.state == "removed" and change.package == package:
                 return change.new.rpartition(".")[2]
         return ""
-
-    # Reviewed rows
 
     def _reviewed(self, symbol: Symbol) -> Availability | None:
         name = symbol.name.lower() if symbol.kind == "command" else symbol.name

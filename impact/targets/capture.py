@@ -3,8 +3,6 @@
 A captured file holds versions and nothing else: no user names, host names or paths, so that it can be committed.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import os

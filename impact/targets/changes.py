@@ -8,8 +8,6 @@ change is judged on a target by versions; for headers of ROS packages whose sour
 what the very release has.
 """
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from typing import Literal, NamedTuple

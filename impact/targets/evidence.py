@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from .surface.store import Surfaces
 
 
-# -- from the reviewed tables ------------------------------------------------------------------------------------------
-
-
 def evidence_of(change: ChangeInForce) -> Evidence:
     """The evidence for a known change of changes.py."""
     row = _rows().get((change.kind, change.package, change.old))
@@ -95,9 +92,6 @@ def _rows() -> dict[tuple[str, str, str], ChangeRow]:
     return {(row.kind, row.package, row.old): row for row in (*all_rows(), *all_uses().values())}
 
 
-# -- from the stored surfaces ------------------------------------------------------------------------------------------
-
-
 @cache
 def surfaces() -> Surfaces:
     """The shipped surfaces."""
@@ -160,9 +154,6 @@ def _deciding(change: str, side: str, events: Sequence[ChangeEvent], place: int)
     if not past or (effect(side, past[-1]) == "gone") != (change == "removed"):
         return None
     return past[-1]
-
-
-# -- on the targets asked for ------------------------------------------------------------------------------------------
 
 
 def seen_on(

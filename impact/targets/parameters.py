@@ -4,8 +4,6 @@ Which parameters a version declares is told by the surfaces; that one came for a
 sources. The facts are in `data/parameters.json`, each with the address that says so.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import msgspec

@@ -42,9 +42,6 @@ class Chosen(NamedTuple):
     reason: str
 
 
-# What a person writes
-
-
 def parse_target(
     text: str, config: Config | None = None, folder: Path = Path(), data: Snapshot | None = None
 ) -> DistroTarget:
@@ -185,8 +182,6 @@ def _is_day(text: str) -> bool:
     return True
 
 
-# Docker images
-
 _WORD = re.compile(r"[a-z0-9.]+")
 
 
@@ -226,9 +221,6 @@ def _docker(text: str, data: Snapshot | None) -> DistroTarget:
             f"`{text}`: the image's name tells no distro; write the distro itself, or a tag that names one of {names}"
         )
     return DistroTarget(found[0], None, found[1], None, text, data)
-
-
-# What stands when nothing is written
 
 
 class NamedDistro(NamedTuple):

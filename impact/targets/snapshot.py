@@ -20,6 +20,7 @@ import msgspec
 
 from ...edges.files import read_file
 from ...edges.limits import limits
+from ...edges.memory import cached_method
 from ..cache import cache_folder
 from ..facts.store import FAULTS
 from . import unpacked
@@ -167,7 +168,6 @@ class Snapshot:
         self._reader = 0  # the process that opened it
         self._lock = threading.Lock()
         self._info: SnapshotInfo | None = None
-        self._names: dict[str, frozenset[str]] = {}
 
     @property
     def info(self) -> SnapshotInfo:
@@ -198,12 +198,10 @@ class Snapshot:
         found = self.rows(sql, parameters)
         return found[0] if found else None
 
+    @cached_method
     def names(self, table: str, column: str = "name") -> frozenset[str]:
         """All values of a column; read once, since every target asks the same."""
-        key = f"{table}.{column}"
-        if key not in self._names:
-            self._names[key] = frozenset(value for (value,) in self.rows(f"SELECT DISTINCT {column} FROM {table}"))
-        return self._names[key]
+        return frozenset(value for (value,) in self.rows(f"SELECT DISTINCT {column} FROM {table}"))
 
     def path(self) -> Path:
         """Where the unpacked file belongs in the cache."""

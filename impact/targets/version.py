@@ -1,7 +1,5 @@
 """Versions as dotted numbers, compared as Debian and CMake compare plain ones."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from functools import lru_cache

@@ -3,8 +3,6 @@
 Source: the CMake files of those packages, and the ament_cmake user documentation.
 """
 
-from __future__ import annotations
-
 import posixpath
 
 from .blocks import CommandCall

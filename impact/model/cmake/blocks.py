@@ -1,7 +1,5 @@
 """Flat commands to blocks: if, foreach, while, function, macro and block with what they hold."""
 
-from __future__ import annotations
-
 from ...facts.cmake import CMakeArgument, CMakeFile, Command
 from .build import At
 from .values import Template

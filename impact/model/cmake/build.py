@@ -1,7 +1,5 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import msgspec

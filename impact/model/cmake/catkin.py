@@ -3,8 +3,6 @@
 Source: catkin's API reference and the CMake files of genmsg, actionlib_msgs, dynamic_reconfigure and rostest.
 """
 
-from __future__ import annotations
-
 import posixpath
 
 from .blocks import CommandCall

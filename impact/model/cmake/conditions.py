@@ -1,7 +1,5 @@
 """The tests of if(), elseif() and while() where CMake's files are interpreted: what operands mean there."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from typing import Protocol

@@ -1,7 +1,5 @@
 """Targets while they are being described, command by command."""
 
-from __future__ import annotations
-
 from ...facts.condition import Condition
 from .build import At, BuildTarget, Link
 

@@ -1,7 +1,5 @@
 """What is looked for: find_package(), pkg-config, find_library() and its kin, fetched projects."""
 
-from __future__ import annotations
-
 import re
 
 from .blocks import CommandCall

@@ -3,8 +3,6 @@
 Source: cmake-generator-expressions(7).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """What is installed."""
 
-from __future__ import annotations
-
 from ...facts.condition import Condition
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles

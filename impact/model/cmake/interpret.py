@@ -1,7 +1,5 @@
 """The CMake of one package interpreted without building it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from ...facts.cmake import CMakeFile

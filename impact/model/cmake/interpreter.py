@@ -4,8 +4,6 @@ A test that cannot be decided is no obstacle: both branches run, each under its 
 variables is joined.
 """
 
-from __future__ import annotations
-
 import itertools
 import posixpath
 import re

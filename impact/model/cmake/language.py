@@ -1,7 +1,5 @@
 """Commands of the language itself: variables, lists, strings, paths, files, includes."""
 
-from __future__ import annotations
-
 import itertools
 import posixpath
 
@@ -13,18 +11,7 @@ from .lists import integer, list_items
 from .names import MODULES, MODULES_WITH, name_set
 from .standard import note_variable
 from .targets import note_written
-from .values import (
-    UNSET,
-    CMakeValue,
-    Word,
-    following,
-    position,
-    split_list,
-    split_words,
-    unsure,
-    with_conditions,
-    word,
-)
+from .values import UNSET, CMakeValue, Word, following, position, split_list, split_words, unsure, with_conditions, word
 
 
 @handles("set", least=1)

@@ -1,7 +1,5 @@
 """Commands over texts: list(), string(), math(), separate_arguments()."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

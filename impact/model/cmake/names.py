@@ -3,8 +3,6 @@
 Source: cmake-commands(7) and cmake-modules(7) up to CMake 3.31, removed commands of older versions included.
 """
 
-from __future__ import annotations
-
 
 def names(text: str) -> tuple[str, ...]:
     """Names written as one text, in their order."""

@@ -1,22 +1,12 @@
 """Commands over paths and files: what they answer comes from the tree alone."""
 
-from __future__ import annotations
-
 import itertools
 import posixpath
 
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .targets import note_made
-from .values import (
-    MAX_WORDS,
-    UNSET,
-    CMakeValue,
-    Word,
-    following,
-    position,
-    word,
-)
+from .values import MAX_WORDS, UNSET, CMakeValue, Word, following, position, word
 
 
 @handles("get_filename_component", least=3)

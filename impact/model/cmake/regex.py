@@ -4,8 +4,6 @@ CMake knows `. [] * + ? ^ $ () |` and no more (string(), "Regex Specification");
 character literal.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """What is built: libraries, executables, custom targets, and what is given to them."""
 
-from __future__ import annotations
-
 import re
 
 from .blocks import CommandCall

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from ....edges.memory import cached_method
 from ...facts.cpp.code import CppCode
 from ...facts.cpp.names import split_at_commas, without_templates
 from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
@@ -158,18 +159,14 @@ class Resolver:
         self.vocabulary, self.scope = vocabulary, scope
         self._types: dict[tuple[str, str, str], CppType | None] = {}
         self._named: dict[tuple[str, str, str], CppType | None] = {}
-        self._homes: dict[str, list[CppClass]] = {}
         self._lines: dict[str, tuple[CppClass, ...]] = {}
         self._opened: tuple[str, ...] | None = None
-        self._renamed: dict[str, tuple[str, ...]] = {}
         self._elsewhere: Resolver | None = None if self.files else self
 
     @property
     def known(self) -> KnownFile:
         """The file itself."""
         return self.files[0]
-
-    # -- names ---------------------------------------------------------------------------------------------------------
 
     def meanings(self, name: str, place: CodePlace) -> Iterator[str]:
         """The full names that a name as written can stand for, nearest first."""
@@ -188,21 +185,19 @@ class Resolver:
         for space in self.opened(place):
             yield f"{space}::{name}"
 
+    @cached_method
     def _meant(self, head: str) -> tuple[str, ...]:
         """What the head of a name stands for by `using a::head` or `namespace head = a`."""
-        known = self._renamed.get(head)
-        if known is None:
-            found: list[str] = []
-            for file in self.files:
-                meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
-                if meant and meant != head:
-                    found.append(meant)
-                    deeper, more, tail = meant.partition("::")
-                    found += [
-                        other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
-                    ]
-            known = self._renamed[head] = tuple(dict.fromkeys(found))
-        return known
+        found: list[str] = []
+        for file in self.files:
+            meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
+            if meant and meant != head:
+                found.append(meant)
+                deeper, more, tail = meant.partition("::")
+                found += [
+                    other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
+                ]
+        return tuple(dict.fromkeys(found))
 
     def opened(self, place: CodePlace) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
@@ -214,22 +209,18 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
+    @cached_method
     def homes(self, class_: str) -> list[CppClass]:
         """The classes of the package that a name can be: those of that full name, else those that end so."""
-        known = self._homes.get(class_)
-        if known is None:
-            last = class_.rpartition("::")[2]
-            found = [one for file in self.files for one in file.classes_named(last)]
-            exact = [one for one in found if one.name == class_]
-            ending = f"::{class_}"
-            known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
-            if not known and "::" in class_:
-                # A namespace may be left out, or brought by a macro.
-                known = [one for one in found if "::" not in one.name]
-            self._homes[class_] = known
+        last = class_.rpartition("::")[2]
+        found = [one for file in self.files for one in file.classes_named(last)]
+        exact = [one for one in found if one.name == class_]
+        ending = f"::{class_}"
+        known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
+        if not known and "::" in class_:
+            # A namespace may be left out, or brought by a macro.
+            known = [one for one in found if "::" not in one.name]
         return known
-
-    # -- types ---------------------------------------------------------------------------------------------------------
 
     def type_of(self, written: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """What a type as written is; None where it is nothing that is known."""
@@ -404,8 +395,6 @@ class Resolver:
         section = section_of(told, [word for word in words if not _POINTED.fullmatch(word)])
         return type_._replace(section=section, pointer=pointer) if section is not None else None
 
-    # -- classes of the package ----------------------------------------------------------------------------------------
-
     def line_of_own(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
         written where their parameters stood."""
@@ -463,8 +452,6 @@ class Resolver:
             for inner in one.bases
             for known in self.known_bases(inner, _around(one), depth + 1)
         ]
-
-    # -- expressions ---------------------------------------------------------------------------------------------------
 
     def value_of(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
         """What an expression is."""

@@ -1,7 +1,5 @@
 """Uses in one C++ file of other packages' names that are not the same in all versions: C++ names, overrides, fields."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator
 
@@ -93,8 +91,6 @@ class ApiUses:
 
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
-
-    # -- one place -----------------------------------------------------------------------------------------------------
 
     def _use(self, use: Written) -> FoundName | None:
         if use.form == "member":
@@ -271,8 +267,6 @@ class ApiUses:
         if callee is not None and callee.kind == "member":
             return "profile" if name == "get_rmw_qos_profile" else ""
         return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
-
-    # -- overrides -----------------------------------------------------------------------------------------------------
 
     def _overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""

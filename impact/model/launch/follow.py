@@ -7,8 +7,6 @@ Sources: roslaunch's loader.py, xmlloader.py and substitution_args.py; launch's 
 node.py, load_composable_nodes.py and push_ros_namespace.py.
 """
 
-from __future__ import annotations
-
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -110,8 +108,6 @@ class _Launch(Filling):
             self.miss(problem.line, "the launch file", problem.message)
         self.run(file.actions)
         self.generation = before
-
-    # Actions
 
     def run(self, actions: Iterable[Action]) -> None:
         for action in actions:
@@ -325,8 +321,6 @@ class _Launch(Filling):
     def do_pass(self, action: Action) -> None:
         """What has no place where it stands."""
 
-    # Parameters
-
     def do_parameter(self, action: Action) -> None:
         if self.generation == 1:
             name = self.text(action.get("name") or literal(""))
@@ -438,8 +432,6 @@ class _Launch(Filling):
             filled = self.substituted(entry) if fill else entry
             key = "/".join(part.strip("/") for part in (full.value or "/", *filled.path) if part.strip("/"))
             self.put(f"/{key}", filled.value, known(str(filled.value), assumed), action.line)
-
-    # Nodes
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:

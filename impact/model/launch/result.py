@@ -1,7 +1,5 @@
 """What following a launch gives: the nodes it starts, with all that the launch file gives them, and what is unknown."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from functools import lru_cache

@@ -3,8 +3,6 @@
 Sources: roslaunch's substitution_args.py and convert_value(); launch's PythonExpression.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -110,9 +108,6 @@ def truth_of(text: LaunchText) -> bool | None:
 
 def flag(value: bool) -> str:
     return "true" if value else "false"
-
-
-# Expressions
 
 
 class CannotTell(Exception):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from ....edges.memory import cached_method
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import PythonUse
 
@@ -18,14 +19,11 @@ class Changing:
 
     def __init__(self, surfaces: Surfaces):
         self._surfaces = surfaces
-        self._words: dict[str, frozenset[str]] = {}
 
+    @cached_method
     def words(self, module: str) -> frozenset[str]:
         """Last parts of the changing names of a top-level module."""
-        known = self._words.get(module)
-        if known is None:
-            known = self._words[module] = frozenset(self._words_of(packages_of(module)))
-        return known
+        return frozenset(self._words_of(packages_of(module)))
 
     def _words_of(self, packages: Iterable[str]) -> Iterator[str]:
         for package in packages:

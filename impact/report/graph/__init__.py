@@ -1,7 +1,5 @@
 """The message-flow graph drawn: text, JSON, GraphML, DOT, Mermaid and a page."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any

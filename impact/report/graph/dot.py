@@ -1,7 +1,5 @@
 """The message-flow graph for Graphviz: nodes as ellipses, topics as boxes, services and actions with dashed edges."""
 
-from __future__ import annotations
-
 from ....edges.console import visible
 from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Graph

@@ -1,7 +1,5 @@
 """The message-flow graph as GraphML, for graph tools."""
 
-from __future__ import annotations
-
 from ....edges.console import visible, visible_in_page
 from ...model.flow.connections import edges, names_of
 from ...model.flow.graph import Graph

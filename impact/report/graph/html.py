@@ -3,8 +3,6 @@
 The page lays the graph out itself, so that what a filter leaves is laid out anew.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from pathlib import Path

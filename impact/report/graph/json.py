@@ -1,7 +1,5 @@
 """The message-flow graph as JSON, see docs/graph.schema.json."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

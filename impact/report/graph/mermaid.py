@@ -1,7 +1,5 @@
 """The message-flow graph as a Mermaid flowchart, for Markdown pages."""
 
-from __future__ import annotations
-
 from ....edges.console import visible
 from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Graph

@@ -1,7 +1,5 @@
 """The message-flow graph as text: each topic, service and action with who uses it, and what could not be resolved."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from ....edges.console import counted

@@ -1,7 +1,5 @@
 """Headers that bring back a name which a library took out of its usual ones (`_c.h` for OpenCV's C constants)."""
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import Literal
 

@@ -32,8 +32,7 @@ from ...targets.changes import ChangeRow, all_uses, behaves_differently
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.evidence_record import Evidence
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .diagnosis import is_of_another_distro
 
 

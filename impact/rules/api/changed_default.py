@@ -24,36 +24,34 @@ Not reported
 from functools import cache
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.surface.offers_cpp import defaults_changed
 from ...targets.symbol import Availability
 from ...targets.target import Target
 from ...targets.version import at_least
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .uses import list_cpp_uses
 
 
 @rule(
-    scope="target",
     severity="note",
     texts=Text(
         "the default argument of `{subject}` changed from `{old}` to `{new}` in {upstream} {since}",
         help="give the argument where it matters",
     ),
 )
-def changed_default(view: TargetView):
-    for package in view:
-        for use in list_cpp_uses(view, package):
-            found = use.found
-            if found.form != "default" or not use.sure or not _came_lately(view.target, found):
-                continue
-            values = defaults_changed(view.offers, found, use.arguments)
-            if values is None:
-                continue
-            data = {"old": values[0], "new": values[1], "upstream": found.package, "since": found.since}
-            yield Diagnostic(use.at, use.name, package.name, data, evidence=found.evidence)
+def changed_default(view: TargetView, package: Package):
+    for use in list_cpp_uses(view, package):
+        found = use.found
+        if found.form != "default" or not use.sure or not _came_lately(view.target, found):
+            continue
+        values = defaults_changed(view.offers, found, use.arguments)
+        if values is None:
+            continue
+        data = {"old": values[0], "new": values[1], "upstream": found.package, "since": found.since}
+        yield Diagnostic(use.at, use.name, package.name, data, evidence=found.evidence)
 
 
 def _came_lately(target: Target, found: Availability) -> bool:

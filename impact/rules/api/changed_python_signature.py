@@ -23,13 +23,9 @@ Not reported
     `try` that expects it or a test of the version; what the workspace itself provides.
 """
 
-from collections.abc import Iterator
-
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Text, rule
 from .diagnosis import UPSTREAM, data_of, diagnose
 from .uses import list_python_uses
 
@@ -37,8 +33,6 @@ _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "call": Text(f"`{{subject}}` of {_HERE} no longer accepts this call: {{detail}}", "[[write {spelling}]]"),
         "call early": Text(
@@ -50,14 +44,9 @@ _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
         ),
     },
 )
-def changed_python_signature(view: TargetView):
+def changed_python_signature(view: TargetView, package: Package):
     # What parameters are called now, where a reviewed table knows: by `function.parameter`.
     renamed = {change.old: change.new.rpartition(".")[2] for change in view.changes("python-api") if change.new}
-    for package in view:
-        yield from rate_upcoming(_list_changed(view, package, renamed))
-
-
-def _list_changed(view: TargetView, package: Package, renamed: dict[str, str]) -> Iterator[Diagnostic | Upcoming]:
     for use in list_python_uses(view, package):
         found = use.found
         if found.form not in ("call", "override"):

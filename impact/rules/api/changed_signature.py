@@ -40,10 +40,7 @@ from ...targets.availability import of_row
 from ...targets.changes import function_of, shows_no_type, standards_of
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import ChangeInForce
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import UPSTREAM, data_of, diagnose
 from .uses import UnservedUse, list_cpp_uses
 
@@ -71,7 +68,6 @@ _REVIEWED = f"{UPSTREAM}[[ in {{standard}}]][[ ({{horizon}})]]"
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         **{form: Text(text, _HELP) for form, text in _LOST.items()},
         **{f"{form} early": Text(text, _HELP) for form, text in _EARLY.items()},

@@ -21,24 +21,16 @@ Not reported
     Code that a version test excludes on the target.
 """
 
-from collections.abc import Iterator
-
 from ...model.view import TargetView
 from ...targets.availability import of_row
 from ...targets.symbol import Symbol
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Doubt, rule
 from .diagnosis import availability_texts, diagnose
 from .uses import list_cpp_uses, list_python_uses
 
 
 @rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts())
 def deprecated_name(view: TargetView):
-    yield from rate_upcoming(_list_deprecated(view))
-
-
-def _list_deprecated(view: TargetView) -> Iterator[Diagnostic | Upcoming]:
     seen = set()
     for package in view:
         uses = list_python_uses(view, package)

@@ -1,16 +1,11 @@
 """What the rules of this family say of something that a target lacks, or will lack."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 
 from ...model.view import TargetView
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, FixAction
-from ..severity import Doubt
-from ..text import Text, Value
-from ..upcoming import Upcoming
+from ..rule import Diagnostic, Doubt, FixAction, Text, Upcoming, Value
 
 UPSTREAM = "{upstream}[[ {version}]]"
 """The package or library that decides, in the version that the target has."""

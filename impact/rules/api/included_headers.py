@@ -1,7 +1,5 @@
 """What is known of the headers that packages include, as the rules on them ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -13,8 +11,7 @@ from ...targets.availability import of_row
 from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Availability, Symbol
 from ...targets.target import ChangeInForce
-from ..rule import FixAction
-from ..severity import Doubt, doubts_of_place
+from ..rule import Doubt, FixAction, doubts_of_place
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
 

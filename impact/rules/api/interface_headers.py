@@ -1,7 +1,5 @@
 """Headers that are generated from interfaces: by a path of the other ROS generation, of C, or of no interface."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 
@@ -11,8 +9,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package, snake
 from ...targets.surface.fields import default_fields
 from ...targets.symbol import Availability
-from ..severity import Doubt
-from ..text import Text, Value
+from ..rule import Doubt, Text, Value
 from .diagnosis import find_missing
 
 TEXTS = {

@@ -26,9 +26,7 @@ from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.evidence import of_offered
 from ...targets.symbol import Availability, Symbol
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
+from ..rule import Diagnostic, Doubt, Replace, rule
 from .diagnosis import availability_texts, data_of
 
 

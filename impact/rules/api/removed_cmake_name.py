@@ -29,15 +29,13 @@ from ...model.cmake.build import At
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import availability_texts, diagnose, find_missing
 
 Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
-@rule(scope="target", severity="error", texts=availability_texts())
+@rule(scope="target", texts=availability_texts())
 def removed_cmake_name(view: TargetView):
     gone = {c.old: c.package for c in view.changes("cmake-removed", "cmake-renamed") if c.state == "removed"}
     for package in view:

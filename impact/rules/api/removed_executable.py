@@ -30,28 +30,18 @@ from collections.abc import Iterator
 from ...model.package import ReferenceUse
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rule
 from .diagnosis import UPSTREAM, availability_texts, diagnose, find_missing, is_of_another_distro
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         **availability_texts(),
         "argument": Text(f"`{{file}}` of {UPSTREAM} no longer has an argument `{{name}}`"),
         "argument early": Text(f"`{{file}}` of {UPSTREAM} has no argument `{{name}}`[[ (added in {{since}})]]"),
     },
 )
-def removed_executable(view: TargetView):
-    for package in view:
-        yield from rate_upcoming(_of_package(view, package))
-
-
-def _of_package(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def removed_executable(view: TargetView, package: Package):
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         reference = use.reference

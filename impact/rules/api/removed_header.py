@@ -28,22 +28,16 @@ Not reported
     (unknown-header reports them).
 """
 
-from collections.abc import Iterator
-
 from ...model.package import is_header
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Text, rule
 from .diagnosis import availability_texts, diagnose
 from .included_headers import find_misspelt, included_headers, is_bridge
 from .interface_headers import find_interface_fault
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         **availability_texts("include"),
         "broken": Text("no package of the workspace has or generates `{subject}`"),
@@ -51,12 +45,7 @@ from .interface_headers import find_interface_fault
         "nested": Text("`{subject}` is not installed by {upstream} {version}", "[[include `{replacement}`]]"),
     },
 )
-def removed_header(view: TargetView):
-    for package in view:
-        yield from rate_upcoming(_list_removed(view, package))
-
-
-def _list_removed(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def removed_header(view: TargetView, package: Package):
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at

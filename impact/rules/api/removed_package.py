@@ -23,9 +23,7 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
 TEXTS = {
@@ -36,7 +34,7 @@ TEXTS = {
 }
 
 
-@rule(scope="target", severity="error", texts=TEXTS)
+@rule(scope="target", texts=TEXTS)
 def removed_package(view: TargetView):
     yield from list_gone_packages(view, "package-removed")
 

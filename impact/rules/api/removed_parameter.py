@@ -27,8 +27,7 @@ from ...model.undeclared_parameters import UndeclaredParameter, list_undeclared_
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.evidence import of_offered
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .diagnosis import is_of_another_distro
 
 _FEW = 3
@@ -37,7 +36,6 @@ _HELP = "[[set `{replacement}`]]"
 
 
 @rule(
-    scope="target",
     severity="warning",
     texts={
         "removed": Text("the parameter `{subject}` is no longer declared by {upstream} {version}", _HELP),
@@ -54,22 +52,21 @@ _HELP = "[[set `{replacement}`]]"
         ),
     },
 )
-def removed_parameter(view: TargetView):
-    for package in view:
-        files = frozenset(package.digest.files)
-        # What a reviewed row about a value says at the same place says more.
-        explained = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "yaml"}
-        by_owner: dict[tuple[str, str, str, bool], list[UndeclaredParameter]] = {}
-        for one in list_undeclared_parameters(view, package):
-            at = one.use.at
-            if (at.path, at.line) not in explained and not is_of_another_distro(view, at.path, files):
-                owner = one.use.plugin or one.use.node
-                by_owner.setdefault((at.path, owner, one.offered.package, one.is_gone), []).append(one)
-        for found in by_owner.values():
-            if len(found) <= _FEW:
-                yield from (_diagnose(package, one) for one in found)
-            else:
-                yield _diagnose(package, found[0], len(found) - 1)
+def removed_parameter(view: TargetView, package: Package):
+    files = frozenset(package.digest.files)
+    # What a reviewed row about a value says at the same place says more.
+    explained = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "yaml"}
+    by_owner: dict[tuple[str, str, str, bool], list[UndeclaredParameter]] = {}
+    for one in list_undeclared_parameters(view, package):
+        at = one.use.at
+        if (at.path, at.line) not in explained and not is_of_another_distro(view, at.path, files):
+            owner = one.use.plugin or one.use.node
+            by_owner.setdefault((at.path, owner, one.offered.package, one.is_gone), []).append(one)
+    for found in by_owner.values():
+        if len(found) <= _FEW:
+            yield from (_diagnose(package, one) for one in found)
+        else:
+            yield _diagnose(package, found[0], len(found) - 1)
 
 
 def _diagnose(package: Package, one: UndeclaredParameter, more: int = 0) -> Diagnostic:

@@ -29,13 +29,11 @@ from collections.abc import Iterator
 from ...model.package import ReferenceUse
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import availability_texts, diagnose, find_missing, is_of_another_distro
 
 
-@rule(scope="target", severity="error", texts=availability_texts())
+@rule(scope="target", texts=availability_texts())
 def removed_plugin(view: TargetView):
     own = {plugin.name or plugin.type for package in view.workspace for _, plugin in package.digest.plugins}
     for package in view:

@@ -26,24 +26,15 @@ Not reported
     written.
 """
 
-from collections.abc import Iterator
-
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import SEVERITIES, Diagnostic, rule
-from ..severity import Doubt, severity
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import SEVERITIES, Doubt, rule, severity
 from .diagnosis import availability_texts, diagnose
 from .uses import UnservedUse, list_python_uses
 
 
-@rule(scope="target", severity="error", texts=availability_texts())
-def removed_python_name(view: TargetView):
-    for package in view:
-        yield from rate_upcoming(_list_removed(view, package))
-
-
-def _list_removed(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+@rule(texts=availability_texts())
+def removed_python_name(view: TargetView, package: Package):
     # Of each name the worst place in a file: what follows a failed import is not reached.
     worst: dict[tuple[str, str, bool], UnservedUse] = {}
     for use in list_python_uses(view, package):

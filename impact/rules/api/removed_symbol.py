@@ -41,10 +41,7 @@ from ...targets.providers.stdlib import stood_in_for
 from ...targets.symbol import Symbol
 from ...targets.target import ChangeInForce
 from ...targets.version import parts
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .brought_back import Headers
 from .diagnosis import UPSTREAM, availability_texts, diagnose
 from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted
@@ -56,7 +53,6 @@ _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         **availability_texts(),
         "changed": Text(f"`{{subject}}` has changed in {UPSTREAM}", "[[use `{replacement}`]]"),

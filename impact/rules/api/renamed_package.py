@@ -27,6 +27,6 @@ from ..rule import rule
 from .removed_package import TEXTS, list_gone_packages
 
 
-@rule(scope="target", severity="error", texts=TEXTS)
+@rule(scope="target", texts=TEXTS)
 def renamed_package(view: TargetView):
     yield from list_gone_packages(view, "package-renamed")

@@ -1,7 +1,5 @@
 """Reviewed rows of known changes on classes, functions, constants and macros, by the name that a target lacks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from ...model.package import NameUse, is_header

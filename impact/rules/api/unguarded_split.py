@@ -30,8 +30,7 @@ from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import At
 from ...targets.evidence_record import Evidence
-from ..rule import Diagnostic, Finding, rule
-from ..text import Text
+from ..rule import Diagnostic, Finding, Text, rule
 
 _MESSAGE = "no single spelling works on {where} for {names}, which changed in `{subject}`"
 

@@ -33,10 +33,7 @@ from ...model.package import MemberUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, doubts_of_place
-from ..text import Text
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import UPSTREAM, availability_texts, data_of, diagnose, find_missing
 
 _MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"
@@ -45,7 +42,6 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         **availability_texts(),
         "field removed": Text(f"{_MISSING}[[ (removed in {{since}})]]", _HELP),

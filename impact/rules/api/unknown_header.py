@@ -25,33 +25,22 @@ Not reported
     what a later or an earlier version has (removed-header reports it).
 """
 
-from collections.abc import Iterator
-
 from ...model.package import IncludeUse
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .included_headers import find_misspelt, included_headers, is_bridge
 from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="removed-header",
     texts={
         **TEXTS,
         "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
     },
 )
-def unknown_header(view: TargetView):
-    for package in view:
-        yield from _list_unknown(view, package)
-
-
-def _list_unknown(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+def unknown_header(view: TargetView, package: Package):
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at

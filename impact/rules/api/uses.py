@@ -1,7 +1,5 @@
 """Uses of C++ and Python names of released packages that a target does not serve as they need."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
@@ -16,7 +14,7 @@ from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
 from ...targets.symbol import Availability
-from ..severity import Doubt, doubts_of_place
+from ..rule import Doubt, doubts_of_place
 
 
 class UnservedUse(NamedTuple):

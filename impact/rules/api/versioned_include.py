@@ -21,40 +21,36 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import versioned_folder
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, Together, doubts_of_place
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
 
 _INCLUDE = "[[include `{replacement}`]]"
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="removed-header",
     texts={
         "there": Text("`{folder}/` is where this platform installs {upstream} {version}; others may not", _INCLUDE),
         "other": Text("`{subject}` is not available with {upstream} {version}", _INCLUDE),
     },
 )
-def versioned_include(view: TargetView):
-    for package in view:
-        for include in package.digest.includes:
-            path = include.path
-            folder = versioned_folder(view.target, path)
-            if folder is None or not view.active(include.conditions) or view.workspace.provides_header(path):
-                continue
-            doubts = doubts_of_place(view, include.role, include.conditions)
-            if not include.targets:
-                doubts = (*doubts, Doubt.UNCOMPILED)
-            data = {
-                "upstream": folder.library,
-                "version": folder.version,
-                "folder": path.partition("/")[0],
-                "replacement": folder.path,
-            }
-            one = Diagnostic(include.at, path, package.name, data, "other", doubts)
-            if folder.there:
-                one = one._replace(kind="there", doubts=(*doubts, Doubt.DISTURBS), together=Together(path))
-            yield one
+def versioned_include(view: TargetView, package: Package):
+    for include in package.digest.includes:
+        path = include.path
+        folder = versioned_folder(view.target, path)
+        if folder is None or not view.active(include.conditions) or view.workspace.provides_header(path):
+            continue
+        doubts = doubts_of_place(view, include.role, include.conditions)
+        if not include.targets:
+            doubts = (*doubts, Doubt.UNCOMPILED)
+        data = {
+            "upstream": folder.library,
+            "version": folder.version,
+            "folder": path.partition("/")[0],
+            "replacement": folder.path,
+        }
+        one = Diagnostic(include.at, path, package.name, data, "other", doubts)
+        if folder.there:
+            one = one._replace(kind="there", doubts=(*doubts, Doubt.DISTURBS), together=Together(path))
+        yield one

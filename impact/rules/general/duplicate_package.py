@@ -19,8 +19,7 @@ Use instead
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(

@@ -12,13 +12,11 @@ Severity
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
     scope="workspace",
-    severity="error",
     texts=Text(
         "no package was found",
         help="give the folder that contains the packages, or remove its COLCON_IGNORE",

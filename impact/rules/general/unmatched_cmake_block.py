@@ -24,8 +24,7 @@ Not reported
 """
 
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 _BLOCKS = ("if", "foreach", "while", "function", "macro", "block")
 _ENDS = ("is never closed", *(f"without {block}()" for block in _BLOCKS))

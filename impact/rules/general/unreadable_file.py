@@ -12,8 +12,7 @@ Severity
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(scope="workspace", severity="note", texts=Text("{problem}"))

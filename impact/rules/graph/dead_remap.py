@@ -28,8 +28,7 @@ Not reported
 from ...model.cmake.build import At
 from ...model.flow.launches import GivenRemapping, LaunchedNode
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .launch_settings import group_by_line
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))

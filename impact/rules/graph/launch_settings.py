@@ -1,7 +1,5 @@
 """Remappings and parameters that launch files set for the nodes they start, line by line."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol, TypeVar
 

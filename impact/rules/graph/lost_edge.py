@@ -22,8 +22,6 @@ Not reported
     may use; endpoints whose name was not known at the base.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
@@ -31,9 +29,7 @@ from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
 

@@ -26,8 +26,7 @@ Not reported
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .unasked_parameters import find_unasked
 
 

@@ -29,8 +29,7 @@ from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
 from ...model.flow.misspelling import NearNames
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(

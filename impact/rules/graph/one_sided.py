@@ -1,7 +1,5 @@
 """Topics of the workspace that have publishers and no subscriber, or subscribers and no publisher."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.flow.edges import Sure, begins, whole_flow

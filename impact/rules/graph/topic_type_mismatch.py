@@ -25,16 +25,13 @@ Not reported
 from ...model.cmake.build import At
 from ...model.flow.edges import FlowPair, display_name, met, uncompared
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
 
 @rule(
     scope="flow",
-    severity="error",
     preview=True,
     texts={
         "mismatch": Text(

@@ -1,7 +1,5 @@
 """Parameters that launch and parameter files set, and that the node's code neither declares nor reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -27,8 +27,7 @@ from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstart
 from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip_of_name
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 _SERVER = {"client": "server", "action client": "action server"}
 # Packages of the services that nodes have by themselves, and types that tell nothing.

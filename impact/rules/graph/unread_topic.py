@@ -24,8 +24,7 @@ Not reported
 from ...model.cmake.build import At
 from ...model.flow.edges import display_name
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .one_sided import find_one_sided
 
 

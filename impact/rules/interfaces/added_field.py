@@ -18,8 +18,7 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .comparison import UNMATCHED, diagnostic, pairs
 
 

@@ -18,14 +18,12 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .comparison import UNMATCHED, diagnostic, pairs, type_of
 
 
 @rule(
     scope="change",
-    severity="error",
     texts=Text(
         f"the type of the field `{{definition}}.{{subject}}` changed from `{{old}}` to `{{new}}`: {UNMATCHED}",
         help="add a new field instead, or change everything that uses it in the same change",

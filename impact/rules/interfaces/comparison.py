@@ -1,7 +1,5 @@
 """Definitions before and after a change, and the packages that use them, for the rules of this family."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
@@ -10,9 +8,7 @@ from ...facts.interface import Field, Section
 from ...model.cmake.build import At
 from ...model.package import InterfaceFile
 from ...model.workspace import Package, Workspace, is_interface_header
-from ..rule import Diagnostic
-from ..severity import Doubt
-from ..text import Value
+from ..rule import Diagnostic, Doubt, Value
 
 # How the message of a changed definition ends: what it means for nodes and bags from before, and who uses it.
 UNMATCHED = "its {hash} changes, so older nodes and bags no longer match; used by {users:nothing in the workspace}"

@@ -17,14 +17,12 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .comparison import diagnostic, pairs
 
 
 @rule(
     scope="change",
-    severity="error",
     group="changed-constant",
     texts=Text(
         "the constant `{subject}` was removed from `{definition}`; used by {users:nothing in the workspace}",

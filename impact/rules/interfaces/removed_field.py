@@ -18,14 +18,12 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .comparison import UNMATCHED, diagnostic, pairs
 
 
 @rule(
     scope="change",
-    severity="error",
     texts=Text(
         f"the field `{{subject}}` was removed from `{{definition}}`: {UNMATCHED}",
         help="keep the field for one release, or change everything that uses it in the same change",

@@ -18,9 +18,7 @@ Use instead
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .comparison import users_of
 
 _REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"
@@ -28,7 +26,6 @@ _REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"
 
 @rule(
     scope="change",
-    severity="error",
     texts={
         "removed": Text(_REMOVED, help="keep the definition for one release"),
         "moved": Text(_REMOVED, help="use `{replacement}`"),

@@ -19,14 +19,12 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .comparison import UNMATCHED, diagnostic, pairs
 
 
 @rule(
     scope="change",
-    severity="error",
     texts=Text(
         f"the order of the fields of `{{definition}}` changed, from `{{subject}}` on: {UNMATCHED}",
         help="restore the old order",

@@ -1,7 +1,5 @@
 """Publish statements whose logic changed since the base, as diagnostics, for the rules of this family."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from ...logic.changes import LogicChange
@@ -12,8 +10,7 @@ from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
-from ..rule import Diagnostic
-from ..severity import Doubt
+from ..rule import Diagnostic, Doubt
 
 _LONGEST = 120
 # How the message of a changed condition goes on, and how every message of the family ends.

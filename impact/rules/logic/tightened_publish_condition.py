@@ -25,8 +25,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .statements import CONDITIONS, READERS, find_changes
 
 

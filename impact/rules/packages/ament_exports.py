@@ -1,7 +1,5 @@
 """The exports of ament packages, as the rules on them ask for it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from ...model.cmake.build import CMakeExport

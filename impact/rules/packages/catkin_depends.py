@@ -22,9 +22,8 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _BUILD = frozenset({"build"})
 _RUN = frozenset({"exec", "build_export"})
@@ -33,8 +32,6 @@ _HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "cmake": Text(
             f"`{{subject}}` is in CATKIN_DEPENDS but is a plain CMake package{_STOPS}",
@@ -44,38 +41,35 @@ _HELP = "add `<{tag}>{subject}</{tag}>` to {manifest}"
             f"`{{subject}}` is in CATKIN_DEPENDS but is a system library{_STOPS}", "name `{subject}` in DEPENDS instead"
         ),
         "run": Text(f"`{{subject}}` is in CATKIN_DEPENDS but is not a run dependency{_STOPS}", _HELP),
-        "build": Text(
-            f"`{{subject}}` is found and is in CATKIN_DEPENDS but is not a build dependency{_STOPS}", _HELP
-        ),
+        "build": Text(f"`{{subject}}` is found and is in CATKIN_DEPENDS but is not a build dependency{_STOPS}", _HELP),
     },
 )
-def catkin_depends(view: TargetView):
-    for package in view if view.target.ros == 1 else ():
-        build = package.build
-        if build.catkin_package is None or package.build_type != "catkin":
+def catkin_depends(view: TargetView, package: Package):
+    build = package.build
+    if view.target.ros != 1 or build.catkin_package is None or package.build_type != "catkin":
+        return
+    declared = view.declared(package)
+    components = {f.name for f in build.found if f.how == "catkin" and view.certain(f.conditions)}
+    old = package.manifest.format == 1
+    seen = set()
+    for export in build.exports:
+        name = export.item
+        if export.how != "catkin_depends" or "$" in name or name in seen or not view.certain(export.conditions):
             continue
-        declared = view.declared(package)
-        components = {f.name for f in build.found if f.how == "catkin" and view.certain(f.conditions)}
-        old = package.manifest.format == 1
-        seen = set()
-        for export in build.exports:
-            name = export.item
-            if export.how != "catkin_depends" or "$" in name or name in seen or not view.certain(export.conditions):
+        seen.add(name)
+        kinds = declared.get(name, set())
+        kind, sure = _why_not_catkin(view, name)
+        tag = "build_depend"
+        if not kind or not any(f.name == name and f.required for f in build.found):
+            sure = True
+            if not kinds & _RUN:
+                kind, tag = "run", "run_depend" if old else "exec_depend" if kinds else "depend"
+            elif name in components and not kinds & _BUILD:
+                kind = "build"
+            else:
                 continue
-            seen.add(name)
-            kinds = declared.get(name, set())
-            kind, sure = _why_not_catkin(view, name)
-            tag = "build_depend"
-            if not kind or not any(f.name == name and f.required for f in build.found):
-                sure = True
-                if not kinds & _RUN:
-                    kind, tag = "run", "run_depend" if old else "exec_depend" if kinds else "depend"
-                elif name in components and not kinds & _BUILD:
-                    kind = "build"
-                else:
-                    continue
-            data = {"tag": tag, "manifest": package.digest.manifest_path} if kind in ("run", "build") else {}
-            yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
+        data = {"tag": tag, "manifest": package.digest.manifest_path} if kind in ("run", "build") else {}
+        yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
 
 
 def _why_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:

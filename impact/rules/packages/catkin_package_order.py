@@ -23,29 +23,25 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
-    scope="target",
     severity="warning",
-    texts=Text(
-        "catkin_package() is called after {targets}", "call it before add_library() and add_executable()"
-    ),
+    texts=Text("catkin_package() is called after {targets}", "call it before add_library() and add_executable()"),
 )
-def catkin_package_order(view: TargetView):
-    for package in view:
-        call = package.build.catkin_package
-        if call is None or package.build_type != "catkin":
-            continue
-        before = set(package.build.before_catkin_package)
-        early = tuple(
-            target.name
-            for target in package.build.targets
-            if target.name in before
-            and target.kind in ("library", "executable", "module")
-            and view.certain(target.conditions)
-        )
-        if early:
-            yield Diagnostic(call, "catkin_package", package.name, {"targets": early})
+def catkin_package_order(view: TargetView, package: Package):
+    call = package.build.catkin_package
+    if call is None or package.build_type != "catkin":
+        return
+    before = set(package.build.before_catkin_package)
+    early = tuple(
+        target.name
+        for target in package.build.targets
+        if target.name in before
+        and target.kind in ("library", "executable", "module")
+        and view.certain(target.conditions)
+    )
+    if early:
+        yield Diagnostic(call, "catkin_package", package.name, {"targets": early})

@@ -5,14 +5,12 @@ the build farm, which builds packages one by one, or a fresh container after ros
 of the workspace bring.
 """
 
-from __future__ import annotations
-
 import re
 
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
-from ..severity import Doubt
+from ..rule import Doubt
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
 """How CMake asks for something, so that the configuration stops without it."""

@@ -22,16 +22,12 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import not_answering
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Replace, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="misspelt-cmake-name",
     texts={
         "case": Text("CMake package `{subject}` not found: names are case-sensitive", "did you mean `{replacement}`?"),
@@ -42,10 +38,9 @@ from ..text import Text
         ),
     },
 )
-def cmake_name_case(view: TargetView):
-    for package in view:
-        yield from _list_unknown_spellings(view, package)
-        yield from _list_lost_spellings(view, package)
+def cmake_name_case(view: TargetView, package: Package):
+    yield from _list_unknown_spellings(view, package)
+    yield from _list_lost_spellings(view, package)
 
 
 def _list_unknown_spellings(view: TargetView, package):

@@ -1,7 +1,5 @@
 """Packages of the workspace that are sure to stop at what another one of it offers them."""
 
-from __future__ import annotations
-
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
 from ...model.view import TargetView

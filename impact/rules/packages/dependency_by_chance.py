@@ -24,35 +24,32 @@ Not reported
 """
 
 from ...model.view import TargetView, weight
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 from .clean_machine import doubts_of_chance, is_chance
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="undeclared-package",
     texts=Text("{use}, and `{subject}` only comes along with {sources}", DECLARE),
 )
-def dependency_by_chance(view: TargetView):
-    for package in view:
-        declared = view.declared(package)
-        for name, needs in find_undeclared(view, package).borrowed.items():
-            strong = [
-                need
-                for need in needs
-                if need.certain and (need.required or need.how == "program") and is_chance(view, package, need, name)
-            ]
-            if strong:
-                first = min(strong, key=weight)
-                sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
-                yield Diagnostic(
-                    first.at,
-                    name,
-                    package.name,
-                    {**describe_need(package, first), "sources": sources},
-                    doubts=doubts_of_chance(view, package, first),
-                    fix=declare_need(view, package, first, name),
-                )
+def dependency_by_chance(view: TargetView, package: Package):
+    declared = view.declared(package)
+    for name, needs in find_undeclared(view, package).borrowed.items():
+        strong = [
+            need
+            for need in needs
+            if need.certain and (need.required or need.how == "program") and is_chance(view, package, need, name)
+        ]
+        if strong:
+            first = min(strong, key=weight)
+            sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
+            yield Diagnostic(
+                first.at,
+                name,
+                package.name,
+                {**describe_need(package, first), "sources": sources},
+                doubts=doubts_of_chance(view, package, first),
+                fix=declare_need(view, package, first, name),
+            )

@@ -20,9 +20,7 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 # Every cycle that is found is cut, and the rest searched again. A workspace in which all packages need each other has
 # about as many cycles as dependencies; the first ones are enough.
@@ -32,7 +30,6 @@ _MOST_EDGES = 2_000_000
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "cycle": Text("dependency cycle: {cycle}", help="remove one of these dependencies"),
         "more": Text(

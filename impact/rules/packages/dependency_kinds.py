@@ -1,14 +1,12 @@
 """Dependencies that are declared, and not for what they are used, as the rules on them ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Set
 from typing import NamedTuple
 
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
-from ..fix_actions import Declare, Remove
+from ..rule import Declare, Remove
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
 _FOR_DEPENDANTS = frozenset({"build_export", "exec", "buildtool_export"})

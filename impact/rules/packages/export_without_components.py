@@ -26,16 +26,13 @@ from collections.abc import Iterator
 from ...model.cmake.links import exported_targets, package_of, public_links
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .ament_exports import AmentExports, read_ament_exports
 
 _COMPONENTS = "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)"
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="missing-export",
     texts={
@@ -47,11 +44,10 @@ _COMPONENTS = "find it with its components in a file given to ament_package(CONF
         ),
     },
 )
-def export_without_components(view: TargetView):
-    for package in view:
-        ament = read_ament_exports(view, package)
-        if ament is not None:
-            yield from _list_without_components(view, package, ament)
+def export_without_components(view: TargetView, package: Package):
+    ament = read_ament_exports(view, package)
+    if ament is not None:
+        yield from _list_without_components(view, package, ament)
 
 
 # Packages whose configuration defines targets for the components asked for alone, and of these the components that need

@@ -26,38 +26,36 @@ Not reported
 import re
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 # How packages that install find modules are called.
 _BRINGS_MODULES = re.compile(r"cmake_modules?\Z")
 
 
 @rule(
-    scope="target",
     severity="warning",
     texts=Text(
         "`{found}` is found before `{subject}`, which provides its find module",
         "call find_package({subject} REQUIRED) first",
     ),
 )
-def find_order(view: TargetView):
-    for package in view:
-        own = {name.rsplit("/", 1)[-1] for name in package.files if name.endswith(".cmake")}
-        asked = [f for f in package.build.found if f.how in ("find_package", "catkin") and view.certain(f.conditions)]
-        place = {}
-        for number, found in enumerate(asked):
-            place.setdefault(found.name, number)
-        for number, found in enumerate(asked):
-            if place[found.name] != number or found.how != "find_package" or f"Find{found.name}.cmake" in own:
-                continue
-            later = next(
-                (
-                    p.name
-                    for p in view.cmake(found.name)
-                    if p.kind == "ros" and _BRINGS_MODULES.search(p.name) and place.get(p.name, -1) > number
-                ),
-                "",
-            )
-            if later and not found.via:
-                yield Diagnostic(found.at, later, package.name, {"found": found.name})
+def find_order(view: TargetView, package: Package):
+    own = {name.rsplit("/", 1)[-1] for name in package.files if name.endswith(".cmake")}
+    asked = [f for f in package.build.found if f.how in ("find_package", "catkin") and view.certain(f.conditions)]
+    place = {}
+    for number, found in enumerate(asked):
+        place.setdefault(found.name, number)
+    for number, found in enumerate(asked):
+        if place[found.name] != number or found.how != "find_package" or f"Find{found.name}.cmake" in own:
+            continue
+        later = next(
+            (
+                p.name
+                for p in view.cmake(found.name)
+                if p.kind == "ros" and _BRINGS_MODULES.search(p.name) and place.get(p.name, -1) > number
+            ),
+            "",
+        )
+        if later and not found.via:
+            yield Diagnostic(found.at, later, package.name, {"found": found.name})

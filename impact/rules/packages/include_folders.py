@@ -1,10 +1,8 @@
 """Folders that headers lie in, as far as whoever is not given their package misses them: now, or after an update."""
 
-from __future__ import annotations
-
 from ...model.view import TargetView
 from ...targets.surface.offers import Offers
-from ..severity import Doubt
+from ..rule import Doubt
 
 
 def shares_one_folder(view: TargetView) -> bool:

@@ -24,8 +24,8 @@ import re
 
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 # A metapackage that brings fewer packages says nothing of what it should.
 _MEMBERS = 3
@@ -35,7 +35,6 @@ _APART = re.compile(
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="undeclared-package",
     texts=Text(
@@ -43,17 +42,14 @@ _APART = re.compile(
         help="add `<{tag}>{subject}</{tag}>`, if that is not meant",
     ),
 )
-def incomplete_metapackage(view: TargetView):
-    for package in view:
-        if not package.manifest.metapackage:
-            continue
-        declared = view.declared(package)
-        folder = posixpath.dirname(package.path)
-        members = {
-            p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder
-        }
-        missing = [name for name in members - declared.keys() if not _APART.search(name)]
-        if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
-            continue
-        tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
-        yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})
+def incomplete_metapackage(view: TargetView, package: Package):
+    if not package.manifest.metapackage:
+        return
+    declared = view.declared(package)
+    folder = posixpath.dirname(package.path)
+    members = {p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
+    missing = [name for name in members - declared.keys() if not _APART.search(name)]
+    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
+        return
+    tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
+    yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})

@@ -21,9 +21,7 @@ import re
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Replace, Text, rule
 
 _HELP = "[[write `{replacement}`]]"
 _TAGS = {
@@ -43,7 +41,6 @@ _TAGS = {
 
 @rule(
     scope="workspace",
-    severity="error",
     texts={
         "tag": Text(
             "`<{subject}>{text}</{subject}>` is not a tag of format {format}, so `{text}` is not declared", _HELP

@@ -19,25 +19,21 @@ Use instead
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import gone_component
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "gone": Text("{library} {version} has no component `{subject}`", "{advice}"),
         "upcoming": Text("`{subject}` will be removed: not in {library} {version} ({horizon})", "{advice}"),
     },
 )
-def library_component(view: TargetView):
-    for package in view:
-        for found in package.build.found:
-            if found.how == "find_package" and view.active(found.conditions):
-                yield from _list_gone(view, package, found)
+def library_component(view: TargetView, package: Package):
+    for found in package.build.found:
+        if found.how == "find_package" and view.active(found.conditions):
+            yield from _list_gone(view, package, found)
 
 
 def _list_gone(view: TargetView, package, found):

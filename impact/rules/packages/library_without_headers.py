@@ -23,15 +23,12 @@ Not reported
 import re
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 from .dependency_kinds import FOR_RUN, fix_kind
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="wrong-dependency-kind",
     texts={
         "bare": Text(
@@ -43,13 +40,7 @@ from .dependency_kinds import FOR_RUN, fix_kind
         ),
     },
 )
-def library_without_headers(view: TargetView):
-    for package in view:
-        yield from _list_bare(view, package)
-
-
-def _list_bare(view: TargetView, package):
-    """Keys that install a library without its headers, where built code wants the headers."""
+def library_without_headers(view: TargetView, package: Package):
     declared = view.declared(package)
     bare = {
         name: debian

@@ -27,15 +27,12 @@ import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .install_rules import is_installed, list_installing
 
 
 @rule(
     scope="target",
-    severity="error",
     group="missing-install",
     texts={
         "doubled": Text(

@@ -23,30 +23,22 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts=Text(
         "`Find{name}.cmake` comes with `{subject}`, which CMakeLists.txt does not find",
         "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
     ),
 )
-def missing_cmake_modules(view: TargetView):
+def missing_cmake_modules(view: TargetView, package: Package):
     if view.target.ros != 1 or view.target.distro in ("groovy", "hydro"):
         return
-    for package in view:
-        if package.build_type == "catkin":
-            yield from _list_unfound(view, package)
-
-
-def _list_unfound(view: TargetView, package):
-    """find_package calls whose find module comes with a package that is not found before."""
+    if package.build_type != "catkin":
+        return
     names = {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:

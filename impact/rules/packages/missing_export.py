@@ -24,17 +24,13 @@ Not reported
     one folder, a missing ament_export_dependencies is a note.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, passed_on_package, public_links
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, rule
-from ..severity import EXPORTED, Doubt, Together
-from ..text import Text
+from ..rule import EXPORTED, Diagnostic, Doubt, Text, Together, rule
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
@@ -43,8 +39,6 @@ _ADD = "add `{subject}` to ament_export_dependencies"
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "link": Text("`{target}` links `{item}` publicly, but `{subject}` is not exported", _ADD),
         "include": Text("an installed header includes `{header}`, but `{subject}` is not exported", _ADD),
@@ -54,15 +48,14 @@ _ADD = "add `{subject}` to ament_export_dependencies"
         ),
     },
 )
-def missing_export(view: TargetView):
-    for package in view:
-        if package.build.catkin_package is not None:
-            yield from _list_of_messages(view, package)
-        ament = read_ament_exports(view, package)
-        if ament is not None:
-            seen: set[str] = set()
-            yield from _list_linked(view, package, ament, seen)
-            yield from _list_included(view, package, ament, seen)
+def missing_export(view: TargetView, package: Package):
+    if package.build.catkin_package is not None:
+        yield from _list_of_messages(view, package)
+    ament = read_ament_exports(view, package)
+    if ament is not None:
+        seen: set[str] = set()
+        yield from _list_linked(view, package, ament, seen)
+        yield from _list_included(view, package, ament, seen)
 
 
 # From this version on ament_target_dependencies() links targets where it linked libraries by their paths before.

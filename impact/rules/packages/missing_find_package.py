@@ -26,10 +26,9 @@ Not reported
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.view import TargetView, interface_of
+from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .unset_library_variable import fold
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
@@ -39,8 +38,6 @@ _SYSTEM_BY_DEFAULT = (
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "given": Text(
             "`{subject}` is given to a target but find_package(`{subject}`) is not called",
@@ -56,54 +53,53 @@ _SYSTEM_BY_DEFAULT = (
         ),
     },
 )
-def missing_find_package(view: TargetView):
-    for package in view:
-        build = package.build
-        if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+def missing_find_package(view: TargetView, package: Package):
+    build = package.build
+    if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+        return
+    yield from _only_placed(view, package)
+    found = list_found_names(view, package)
+    if found is None:
+        return
+    reachable = view.spread(found) | view.roles.found_with(found)
+    tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
+    outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
+    built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
+    shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
+    closure = view.closure(package)
+    seen = set()
+    for at, name in list_given_names(view, package):
+        if name in reachable or name in seen or name in package.digest.modules or name == package.name:
             continue
-        yield from _only_placed(view, package)
-        found = list_found_names(view, package)
-        if found is None:
+        seen.add(name)
+        # The configuration of a library whose contents are not known may find others.
+        opaque = any(view.opaque_libraries(package, f.name) for f in package.build.found)
+        doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
+        yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
+    sought = {fold(f.name) for f in package.build.found if f.name in outside}
+    linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
+    for need in view.weighed(package):
+        if need.how != "include" or need.role != "build" or not need.certain:
             continue
-        reachable = view.spread(found) | view.roles.found_with(found)
-        tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
-        outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
-        built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
-        shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
-        closure = view.closure(package)
-        seen = set()
-        for at, name in list_given_names(view, package):
-            if name in reachable or name in seen or name in package.digest.modules or name == package.name:
-                continue
-            seen.add(name)
-            # The configuration of a library whose contents are not known may find others.
-            opaque = any(view.opaque_libraries(package, f.name) for f in package.build.found)
-            doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
-            yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
-        sought = {fold(f.name) for f in package.build.found if f.name in outside}
-        linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
-        for need in view.weighed(package):
-            if need.how != "include" or need.role != "build" or not need.certain:
-                continue
-            reached = built if shipped.intersection(need.targets) else reachable
-            if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
-                continue
-            name = next((p.name for p in need.providers if p.name in closure), None)
-            if name is None or name in seen or name == package.name:
-                continue
-            ros = need.providers[0].kind == "ros"
-            stems = {fold(p.name) for p in need.providers} | {fold(need.subject.split("/")[0])}
-            if any(a in b or b in a for a in stems for b in sought if len(a) > 2 and len(b) > 2):
-                continue
-            if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
-                continue
-            header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
-            if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
-                continue
-            seen.add(name)
-            counts = name in view.declared(package) and ros and not header_only
-            doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
-            yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
+        reached = built if shipped.intersection(need.targets) else reachable
+        if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
+            continue
+        name = next((p.name for p in need.providers if p.name in closure), None)
+        if name is None or name in seen or name == package.name:
+            continue
+        ros = need.providers[0].kind == "ros"
+        stems = {fold(p.name) for p in need.providers} | {fold(need.subject.split("/")[0])}
+        if any(a in b or b in a for a in stems for b in sought if len(a) > 2 and len(b) > 2):
+            continue
+        if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
+            continue
+        header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
+        if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
+            continue
+        seen.add(name)
+        counts = name in view.declared(package) and ros and not header_only
+        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
+        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
 
 
 def _doubt_of_include(view: TargetView, need) -> Doubt | None:

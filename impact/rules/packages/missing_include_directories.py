@@ -21,27 +21,19 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts=Text(
         "`{target}` includes `{header}` but does not get {subject}", "include_directories(${{catkin_INCLUDE_DIRS}})"
     ),
 )
-def missing_include_directories(view: TargetView):
-    for package in view:
-        if package.build_type == "catkin":
-            yield from _list_without(view, package)
-
-
-def _list_without(view: TargetView, package):
-    """catkin packages that are found, and whose include directories no target gets."""
+def missing_include_directories(view: TargetView, package: Package):
+    if package.build_type != "catkin":
+        return
     build = package.build
     if not any(f.how == "catkin" for f in build.found) or build.unresolved:
         return

@@ -28,9 +28,7 @@ from collections.abc import Iterator
 
 from ...model.package import role_of_folder
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .install_rules import is_installed, list_installing, list_references
 
 _TARGETS = "add it to install(TARGETS ...)"
@@ -38,7 +36,6 @@ _TARGETS = "add it to install(TARGETS ...)"
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "started": Text("`{subject}` is not installed, although a launch file starts it", _TARGETS),
         "exported": Text("`{subject}` is not installed, although it is exported", _TARGETS),

@@ -23,16 +23,13 @@ Not reported
 
 from ...model.cmake.build import for_tests
 from ...model.view import TargetView
-from ..fix_actions import Declare
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Declare, Diagnostic, Doubt, Text, rule
 
 _GROUP = "rosidl_interface_packages"
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="missing-interface-wiring",
     texts=Text(
@@ -40,17 +37,16 @@ _GROUP = "rosidl_interface_packages"
         "add `<member_of_group>{subject}</member_of_group>` to package.xml",
     ),
 )
-def missing_interface_group(view: TargetView):
-    for package in view:
-        if not package.build_type.startswith("ament"):
-            continue
-        if any(d.kind == "member_of_group" and d.name == _GROUP for d in package.manifest.dependencies):
-            continue
-        for generated in package.build.generated:
-            if generated.how == "rosidl" and view.certain(generated.conditions) and not for_tests(generated.conditions):
-                fix = _join_group(package)
-                yield Diagnostic(generated.at, _GROUP, package.name, doubts=(Doubt.DISTURBS,), fix=fix)
-                break
+def missing_interface_group(view: TargetView, package: Package):
+    if not package.build_type.startswith("ament"):
+        return
+    if any(d.kind == "member_of_group" and d.name == _GROUP for d in package.manifest.dependencies):
+        return
+    for generated in package.build.generated:
+        if generated.how == "rosidl" and view.certain(generated.conditions) and not for_tests(generated.conditions):
+            fix = _join_group(package)
+            yield Diagnostic(generated.at, _GROUP, package.name, doubts=(Doubt.DISTURBS,), fix=fix)
+            break
 
 
 def _join_group(package) -> tuple[Declare, ...]:

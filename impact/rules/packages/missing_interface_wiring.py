@@ -23,14 +23,11 @@ Not reported
 import re
 
 from ...model.view import TargetView
-from ..fix_actions import Insert
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Insert, Text, rule
 
 
 @rule(
-    scope="target",
     severity="warning",
     texts={
         "order": Text(
@@ -38,13 +35,9 @@ from ..text import Text
         ),
     },
 )
-def missing_interface_wiring(view: TargetView):
-    for package in view:
-        if package.build_type == "catkin":
-            yield from _list_unordered(view, package)
-
-
-def _list_unordered(view: TargetView, package):
+def missing_interface_wiring(view: TargetView, package: Package):
+    if package.build_type != "catkin":
+        return
     orders = _find_orders(package)
     targets = {t.name: t for t in package.build.targets if t.kind in ("executable", "library", "test")}
     generates = any(g.how == "catkin" for g in package.build.generated)

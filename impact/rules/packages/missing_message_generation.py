@@ -21,32 +21,28 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-interface-wiring",
     texts=Text(
         "messages are generated but `{subject}` is not found[[; only `{through}` brings it]]",
         "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...)",
     ),
 )
-def missing_message_generation(view: TargetView):
-    for package in view:
-        if package.build_type != "catkin":
-            continue
-        generated = [g for g in package.build.generated if g.how == "catkin" and view.active(g.conditions)]
-        found = {f.name for f in package.build.found}
-        if not generated or "message_generation" in found:
-            continue
-        # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
-        generators = {*view.roles.exports("message_generation")} - {"genmsg"}
-        if found & generators or generators & view.spread(found & {"genmsg"}):
-            continue
-        through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
-        doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
-        yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)
+def missing_message_generation(view: TargetView, package: Package):
+    if package.build_type != "catkin":
+        return
+    generated = [g for g in package.build.generated if g.how == "catkin" and view.active(g.conditions)]
+    found = {f.name for f in package.build.found}
+    if not generated or "message_generation" in found:
+        return
+    # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
+    generators = {*view.roles.exports("message_generation")} - {"genmsg"}
+    if found & generators or generators & view.spread(found & {"genmsg"}):
+        return
+    through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
+    doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
+    yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)

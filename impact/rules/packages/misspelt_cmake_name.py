@@ -24,44 +24,39 @@ Not reported
 
 from ...model.misspelling import SpellingIndex
 from ...model.view import TargetView
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Replace, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
         "near": Text("no package provides `{subject}`; `{replacement}` is declared", "write `{replacement}`"),
     },
 )
-def misspelt_cmake_name(view: TargetView):
-    for package in view:
-        declared = view.declared(package)
-        found = {f.name for f in package.build.found}
-        near = None
-        for at, name, required, conditions, exact, exported in _named(package):
-            if package.name in view.workspace.find_modules.get(name, ()):
-                continue
-            if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
-                continue
-            if near is None:
-                near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
-            halves = _run_together(name, near.names)
-            if halves:
-                sure = required or (exported and view.certain(conditions))
-                data = {"first": halves[0], "second": halves[1]}
-                fix = (Replace(at.path, at.line, at.column, name, " ".join(halves)),)
-                yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
-                continue
-            meant = near.nearest(name) if exact else None
-            if meant is not None and meant != name and view.target.ever_released(name) is False:
-                doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
-                fix = (Replace(at.path, at.line, at.column, name, meant),)
-                yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
+def misspelt_cmake_name(view: TargetView, package: Package):
+    declared = view.declared(package)
+    found = {f.name for f in package.build.found}
+    near = None
+    for at, name, required, conditions, exact, exported in _named(package):
+        if package.name in view.workspace.find_modules.get(name, ()):
+            continue
+        if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
+            continue
+        if near is None:
+            near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
+        halves = _run_together(name, near.names)
+        if halves:
+            sure = required or (exported and view.certain(conditions))
+            data = {"first": halves[0], "second": halves[1]}
+            fix = (Replace(at.path, at.line, at.column, name, " ".join(halves)),)
+            yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
+            continue
+        meant = near.nearest(name) if exact else None
+        if meant is not None and meant != name and view.target.ever_released(name) is False:
+            doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
+            fix = (Replace(at.path, at.line, at.column, name, meant),)
+            yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
 
 
 def _named(package):

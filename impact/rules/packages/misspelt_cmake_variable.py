@@ -25,11 +25,9 @@ import re
 
 from ...model.misspelling import is_slip
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Replace, Text, rule
 
 _SUFFIXES = (
     "_INCLUDE_DIRS",
@@ -44,7 +42,6 @@ _SUFFIXES = (
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="misspelt-cmake-name",
     texts={
@@ -54,30 +51,7 @@ _SUFFIXES = (
         ),
     },
 )
-def misspelt_cmake_variable(view: TargetView):
-    for package in view:
-        yield from _list_misspelt(view, package)
-
-
-def _is_misspelt(stem: str, name: str) -> bool:
-    """True when the stem of a variable is a letter or an underscore away from a package's name; a library's variables
-    often have another number or other separators in them than its name."""
-    letters = re.sub(r"[\W_\d]", "", name)
-    return (
-        len(letters) > 4
-        and is_slip(stem, name)
-        and stem.lower() != name.lower()
-        and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
-    )
-
-
-def _set_by_hand(package) -> set[str]:
-    """Variables that calls other than find_package() name the beginning of."""
-    return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
-
-
-def _list_misspelt(view: TargetView, package):
-    """Variables that only differ in case, or by a letter, from what a find_package of the package sets."""
+def misspelt_cmake_variable(view: TargetView, package: Package):
     found = sorted({f.name for f in package.build.found})
     folded = {name.lower(): name for name in found}
     seen = set()
@@ -113,6 +87,23 @@ def _list_misspelt(view: TargetView, package):
             if use.name in _set_by_hand(package):
                 continue
             yield _diagnose_variable(package, use, meant, right, "other variable")
+
+
+def _is_misspelt(stem: str, name: str) -> bool:
+    """True when the stem of a variable is a letter or an underscore away from a package's name; a library's variables
+    often have another number or other separators in them than its name."""
+    letters = re.sub(r"[\W_\d]", "", name)
+    return (
+        len(letters) > 4
+        and is_slip(stem, name)
+        and stem.lower() != name.lower()
+        and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
+    )
+
+
+def _set_by_hand(package) -> set[str]:
+    """Variables that calls other than find_package() name the beginning of."""
+    return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
 
 
 def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Diagnostic:

@@ -30,15 +30,11 @@ from collections.abc import Iterator
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .ament_exports import list_installed_targets, read_ament_exports
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-export",
     texts={
         "directory": Text(
@@ -62,14 +58,13 @@ from .ament_exports import list_installed_targets, read_ament_exports
         ),
     },
 )
-def nonexistent_export(view: TargetView):
-    for package in view:
-        if package.build.catkin_package is not None:
-            yield from _list_directories(view, package)
-            yield from _list_of_catkin(view, package)
-        ament = read_ament_exports(view, package)
-        if ament is not None:
-            yield from _list_of_ament(view, package, ament.exports)
+def nonexistent_export(view: TargetView, package: Package):
+    if package.build.catkin_package is not None:
+        yield from _list_directories(view, package)
+        yield from _list_of_catkin(view, package)
+    ament = read_ament_exports(view, package)
+    if ament is not None:
+        yield from _list_of_ament(view, package, ament.exports)
 
 
 def _list_directories(view: TargetView, package):

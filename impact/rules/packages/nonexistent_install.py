@@ -26,14 +26,12 @@ import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .install_rules import list_installing
 
 
 @rule(
     scope="target",
-    severity="error",
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),

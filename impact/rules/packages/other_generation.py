@@ -21,13 +21,11 @@ Use instead
 from ...model.cmake.build import At
 from ...model.package import build_type_of
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
     scope="target",
-    severity="error",
     texts=Text(
         "no package of the workspace can be built on {distro}: {build_type} belongs to ROS {generation}",
         help="check against a ROS {generation} target",

@@ -21,29 +21,25 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="library-component",
     texts=Text(
         "`{package}` finds Qt 4, but rviz {version} is built with Qt 5", "find_package(Qt5 COMPONENTS Core Widgets)"
     ),
 )
-def other_qt(view: TargetView):
+def other_qt(view: TargetView, package: Package):
     rviz = view.target.version("rviz") or ""
     if not rviz or not at_least(rviz, "1.12"):
         return
-    for package in view:
-        found = {f.name: f for f in package.build.found if f.how == "find_package" and view.active(f.conditions)}
-        qt4 = found.get("Qt4")
-        if qt4 is None or found.keys() & {"Qt5Widgets", "Qt5"}:
-            continue
-        if view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
-            doubts = (qt4.required or Doubt.OPTIONAL, view.certain(qt4.conditions) or Doubt.CONDITIONAL)
-            yield Diagnostic(qt4.at, "Qt4", package.name, {"version": rviz}, doubts=doubts)
+    found = {f.name: f for f in package.build.found if f.how == "find_package" and view.active(f.conditions)}
+    qt4 = found.get("Qt4")
+    if qt4 is None or found.keys() & {"Qt5Widgets", "Qt5"}:
+        return
+    if view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
+        doubts = (qt4.required or Doubt.OPTIONAL, view.certain(qt4.conditions) or Doubt.CONDITIONAL)
+        yield Diagnostic(qt4.at, "Qt4", package.name, {"version": rviz}, doubts=doubts)

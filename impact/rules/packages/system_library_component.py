@@ -21,30 +21,21 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts=Text(
         "`{subject}` is a system library in {distro}, not a catkin component",
         "find_package({subject} REQUIRED), or pkg-config, on its own",
     ),
 )
-def system_library_component(view: TargetView):
-    for package in view:
-        if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
-            yield from _list_components(view, package)
-
-
-def _list_components(view: TargetView, package):
-    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components. One
-    that was found before is found again: CMake remembers where it is."""
-    before: set[str] = set()
+def system_library_component(view: TargetView, package: Package):
+    if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+        return
+    before: set[str] = set()  # what is found again, since CMake remembers where it is
     for found in package.build.found:
         name = found.name
         if found.how == "find_package":

@@ -21,31 +21,28 @@ Not reported
 
 from ...model.cmake.links import stops_at_names
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts=Text(
         "`{target}` is given `{package}`, which is this package itself, so CMake stops",
         "target_link_libraries({target} {package})",
     ),
 )
-def target_given_own_package(view: TargetView):
+def target_given_own_package(view: TargetView, package: Package):
     if not stops_at_names(view):
         return
-    for package in view:
-        if any(f.name == package.name or "$" in f.name for f in package.build.found):
-            continue
-        given = (
-            (target, link)
-            for target in package.build.targets
-            for link in target.links
-            if link.how == "ament" and link.item == package.name and view.certain(target.conditions + link.conditions)
-        )
-        for target, link in given:
-            yield Diagnostic(link.at, "ament_target_dependencies", package.name, {"target": target.name})
-            break
+    if any(f.name == package.name or "$" in f.name for f in package.build.found):
+        return
+    given = (
+        (target, link)
+        for target in package.build.targets
+        for link in target.links
+        if link.how == "ament" and link.item == package.name and view.certain(target.conditions + link.conditions)
+    )
+    for target, link in given:
+        yield Diagnostic(link.at, "ament_target_dependencies", package.name, {"target": target.name})
+        break

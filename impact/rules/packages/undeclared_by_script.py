@@ -21,39 +21,35 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
 _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
 
 
 @rule(
-    scope="target",
-    severity="error",
     doubts=(Doubt.DISTURBS,),
     texts=Text(
         "a script that dependants run finds `{found}`, but package.xml does not export `{subject}`",
         help="add `<build_export_depend>{subject}</build_export_depend>` to {manifest}",
     ),
 )
-def undeclared_by_script(view: TargetView):
-    for package in view:
-        if not package.build.handed_on:
+def undeclared_by_script(view: TargetView, package: Package):
+    if not package.build.handed_on:
+        return
+    declared = view.declared(package)
+    # Who finds the package builds with the same tool.
+    closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
+    reported = {package.name}
+    for found in package.build.handed_on:
+        if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:
             continue
-        declared = view.declared(package)
-        # Who finds the package builds with the same tool.
-        closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
-        reported = {package.name}
-        for found in package.build.handed_on:
-            if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:
-                continue
-            reported.add(found.name)
-            providers = view.cmake(found.name)
-            ros = bool(providers) and all(p.kind == "ros" for p in providers)
-            if not ros or view.answered(providers, closure) or view.blind(package):
-                continue
-            name = providers[0].name
-            data = {"found": found.name, "manifest": package.digest.manifest_path}
-            yield Diagnostic(found.at, name, package.name, data)
+        reported.add(found.name)
+        providers = view.cmake(found.name)
+        ros = bool(providers) and all(p.kind == "ros" for p in providers)
+        if not ros or view.answered(providers, closure) or view.blind(package):
+            continue
+        name = providers[0].name
+        data = {"found": found.name, "manifest": package.digest.manifest_path}
+        yield Diagnostic(found.at, name, package.name, data)

@@ -22,29 +22,25 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 # Source: ament_cmake_auto's ament_auto_find_build_dependencies.cmake, the same in all distros.
 _KINDS = frozenset(("build", "buildtool", "test"))
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="undeclared-package",
     texts=Text(
         "`{subject}` is REQUIRED of ament_auto, which refuses what `{package}` does not declare",
         help="declare `{subject}` by this name, or find_package({subject} REQUIRED) on its own",
     ),
 )
-def undeclared_for_ament_auto(view: TargetView):
-    for package in view:
-        named = {d.name for d in package.manifest.dependencies if d.kind in _KINDS}
-        for found in package.build.found:
-            if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
-                continue
-            if view.active(found.conditions):
-                doubts = () if view.certain(found.conditions) else (Doubt.CONDITIONAL,)
-                yield Diagnostic(found.at, found.name, package.name, doubts=doubts)
+def undeclared_for_ament_auto(view: TargetView, package: Package):
+    named = {d.name for d in package.manifest.dependencies if d.kind in _KINDS}
+    for found in package.build.found:
+        if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
+            continue
+        if view.active(found.conditions):
+            doubts = () if view.certain(found.conditions) else (Doubt.CONDITIONAL,)
+            yield Diagnostic(found.at, found.name, package.name, doubts=doubts)

@@ -1,14 +1,12 @@
 """What packages use and do not declare, as the rules on it ask for it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from ...model.misspelling import folded, one_edit
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular, name_to_declare, present
-from ..fix_actions import Declare
+from ..rule import Declare
 from .clean_machine import TEST_HEADERS
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")

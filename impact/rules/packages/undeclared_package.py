@@ -34,32 +34,28 @@ Not reported
 """
 
 from ...model.view import TargetView, weight
-from ..rule import Diagnostic, rule
-from ..severity import AT_RUN_TIME, Together, severity
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import AT_RUN_TIME, Diagnostic, Text, Together, rule, severity
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text("{use}, and nothing that `{package}` declares brings `{subject}`", DECLARE),
 )
-def undeclared_package(view: TargetView):
-    for package in view:
-        missing = find_undeclared(view, package).missing
-        # A package that leaves out many things it runs with is told of the first few.
-        firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
-        for first, name in firsts:
-            doubts = doubts_of_missing(view, package, first, name)
-            at_run_time = first.how not in (*ASKED, "include")
-            yield Diagnostic(
-                first.at,
-                name,
-                package.name,
-                describe_need(package, first),
-                doubts=doubts,
-                fix=declare_need(view, package, first, name) if severity(*doubts) != "note" else (),
-                together=Together("run", AT_RUN_TIME) if at_run_time else None,
-            )
+def undeclared_package(view: TargetView, package: Package):
+    missing = find_undeclared(view, package).missing
+    # A package that leaves out many things it runs with is told of the first few.
+    firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
+    for first, name in firsts:
+        doubts = doubts_of_missing(view, package, first, name)
+        at_run_time = first.how not in (*ASKED, "include")
+        yield Diagnostic(
+            first.at,
+            name,
+            package.name,
+            describe_need(package, first),
+            doubts=doubts,
+            fix=declare_need(view, package, first, name) if severity(*doubts) != "note" else (),
+            together=Together("run", AT_RUN_TIME) if at_run_time else None,
+        )

@@ -22,11 +22,9 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ..evidence import present
-from ..fix_actions import Declare
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Declare, Diagnostic, Doubt, Text, rule
 from .clean_machine import is_grouped
 
 # What the packages that make tests of some kind are made of.
@@ -34,35 +32,32 @@ _TESTS = "ament_cmake_test"
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="undeclared-package",
     texts=Text(
         "`{command}` comes from `{subject}`, and nothing that `{package}` declares brings it",
         help="add `<test_depend>{subject}</test_depend>` to {manifest}, and find_package({subject} REQUIRED)",
     ),
 )
-def undeclared_test_command(view: TargetView):
-    for package in view:
-        if not package.build_type.startswith("ament"):
+def undeclared_test_command(view: TargetView, package: Package):
+    if not package.build_type.startswith("ament"):
+        return
+    reported = set()
+    for use in package.build.uses:
+        name = _find_owners(view).get(use.name) if use.kind == "command" else None
+        if name in (None, package.name, *reported) or not view.active(use.conditions) or not present(view, name):
             continue
-        reported = set()
-        for use in package.build.uses:
-            name = _find_owners(view).get(use.name) if use.kind == "command" else None
-            if name in (None, package.name, *reported) or not view.active(use.conditions) or not present(view, name):
-                continue
-            reported.add(name)
-            if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
-                continue
-            path = package.digest.manifest_path
-            yield Diagnostic(
-                use.at,
-                name,
-                package.name,
-                {"command": use.name, "manifest": path},
-                doubts=_doubts(view, package, name, use.conditions),
-                fix=() if view.declared(package).get(name) else (Declare(path, name, "test_depend"),),
-            )
+        reported.add(name)
+        if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
+            continue
+        path = package.digest.manifest_path
+        yield Diagnostic(
+            use.at,
+            name,
+            package.name,
+            {"command": use.name, "manifest": path},
+            doubts=_doubts(view, package, name, use.conditions),
+            fix=() if view.declared(package).get(name) else (Declare(path, name, "test_depend"),),
+        )
 
 
 def _find_owners(view: TargetView) -> dict[str, str]:

@@ -23,41 +23,38 @@ Not reported
 """
 
 from ...model.view import Need, TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 from .clean_machine import doubts_of_compiled
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text(
         "`{include}` includes `{header}`, and nothing that `{package}` declares brings `{subject}`",
         help="add `<depend>{subject}</depend>` to {manifest}",
     ),
 )
-def undeclared_through_header(view: TargetView):
-    for package in view:
-        if not package.digest.includes or view.blind(package):
+def undeclared_through_header(view: TargetView, package: Package):
+    if not package.digest.includes or view.blind(package):
+        return
+    closure = view.may_bring(package)
+    reported: set[str] = {package.name}
+    for need in view.weighed(package):
+        if need.how != "include" or not need.certain or not view.built(need.role) or not need.targets:
             continue
-        closure = view.may_bring(package)
-        reported: set[str] = {package.name}
-        for need in view.weighed(package):
-            if need.how != "include" or not need.certain or not view.built(need.role) or not need.targets:
+        if not view.answered(need.providers, closure):
+            continue  # undeclared-package reports that
+        for name, header in _follow(view, need):
+            if name in reported or view.answered(view.header(header), closure):
                 continue
-            if not view.answered(need.providers, closure):
-                continue  # undeclared-package reports that
-            for name, header in _follow(view, need):
-                if name in reported or view.answered(view.header(header), closure):
-                    continue
-                reported.add(name)
-                yield Diagnostic(
-                    need.at,
-                    name,
-                    package.name,
-                    {"include": need.subject, "header": header, "manifest": package.digest.manifest_path},
-                    doubts=doubts_of_compiled(view, package, need),
-                )
+            reported.add(name)
+            yield Diagnostic(
+                need.at,
+                name,
+                package.name,
+                {"include": need.subject, "header": header, "manifest": package.digest.manifest_path},
+                doubts=doubts_of_compiled(view, package, need),
+            )
 
 
 def _follow(view: TargetView, need: Need) -> list[tuple[str, str]]:

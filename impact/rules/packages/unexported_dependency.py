@@ -23,16 +23,13 @@ Not reported
 
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .dependency_kinds import FOR_RUN, fix_kind, list_wrong_kinds
 
 _AS_DEPEND = "declare it as `<{tag}>`"
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="wrong-dependency-kind",
     texts={
@@ -42,14 +39,13 @@ _AS_DEPEND = "declare it as `<{tag}>`"
         ),
     },
 )
-def unexported_dependency(view: TargetView):
-    for package in view:
-        yield from _list_linked(view, package)
-        for need, name, kinds, lacking in list_wrong_kinds(view, package):
-            if lacking == "dependants":
-                data = {"header": need.subject, "tag": _tag(package)}
-                fix = fix_kind(view, package, name, "depend", kinds)
-                yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix)
+def unexported_dependency(view: TargetView, package: Package):
+    yield from _list_linked(view, package)
+    for need, name, kinds, lacking in list_wrong_kinds(view, package):
+        if lacking == "dependants":
+            data = {"header": need.subject, "tag": _tag(package)}
+            fix = fix_kind(view, package, name, "depend", kinds)
+            yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix)
 
 
 def _tag(package: Package) -> str:

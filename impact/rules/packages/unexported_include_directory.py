@@ -26,14 +26,11 @@ from collections.abc import Iterator
 
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="missing-export",
     texts={
@@ -47,12 +44,11 @@ from .ament_exports import AmentExports, exports_something, list_installed_targe
         ),
     },
 )
-def unexported_include_directory(view: TargetView):
-    for package in view:
-        yield from _list_nothing(view, package)
-        ament = read_ament_exports(view, package)
-        if ament is not None:
-            yield from _list_off_path(view, package, ament)
+def unexported_include_directory(view: TargetView, package: Package):
+    yield from _list_nothing(view, package)
+    ament = read_ament_exports(view, package)
+    if ament is not None:
+        yield from _list_off_path(view, package, ament)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:

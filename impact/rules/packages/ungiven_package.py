@@ -28,27 +28,18 @@ import re
 
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 from .include_folders import doubts_of_folder, shares_one_folder
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts=Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
 )
-def ungiven_package(view: TargetView):
-    for package in view:
-        yield from _list_ungiven(view, package)
-
-
-def _list_ungiven(view: TargetView, package):
-    """Packages that are found, whose headers a target includes, and that the target is not given."""
+def ungiven_package(view: TargetView, package: Package):
     if package.build_type != "ament_cmake" or package.build.unresolved or shares_one_folder(view):
         return
     targets = {t.name: t for t in package.build.targets}

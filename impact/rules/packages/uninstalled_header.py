@@ -29,45 +29,40 @@ from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .dependants import compiled_elsewhere
 
 _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text(
         "`{header}` is installed and includes `{subject}`, which is not installed",
         help="install `{file}`, or include it from sources alone",
     ),
 )
-def uninstalled_header(view: TargetView):
-    for package in view:
-        if not package.build.files or not package.digest.public_headers:
+def uninstalled_header(view: TargetView, package: Package):
+    if not package.build.files or not package.digest.public_headers:
+        return
+    installed = installed_headers(package)
+    if not installed.known:
+        return
+    made = set(package.build.made)
+    reported = set()
+    written = dict(package.digest.written_inner)
+    for path, inner in package.digest.inner:
+        place = installed.headers.get(path)
+        if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
             continue
-        installed = installed_headers(package)
-        if not installed.known:
-            continue
-        made = set(package.build.made)
-        reported = set()
-        written = dict(package.digest.written_inner)
-        for path, inner in package.digest.inner:
-            place = installed.headers.get(path)
-            if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
+        lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
+        for to in lost if lost else ():
+            include = _include_of(view, written.get(path, ()), to)
+            if include is None or to in made or _answered(installed.headers, place, include.path):
                 continue
-            lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
-            for to in lost if lost else ():
-                include = _include_of(view, written.get(path, ()), to)
-                if include is None or to in made or _answered(installed.headers, place, include.path):
-                    continue
-                reported.add(to)
-                data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
-                doubts = _doubts(view, package, path)
-                yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
+            reported.add(to)
+            data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
+            doubts = _doubts(view, package, path)
+            yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
 
 
 def _doubts(view: TargetView, package: Package, path: str) -> tuple[Doubt, ...]:

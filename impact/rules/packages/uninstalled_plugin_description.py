@@ -25,15 +25,12 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .install_rules import has_only_data, is_installed, list_installing
 
 
 @rule(
     scope="target",
-    severity="error",
     group="missing-install",
     texts={
         "no description": Text("the exported plugin description `{subject}` does not exist", "correct the path"),

@@ -20,14 +20,11 @@ Not reported
     Targets that are given something that cannot be seen; libraries.
 """
 
-from collections.abc import Iterator
-
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 from .unlinked_library import COMPILED
 
@@ -40,7 +37,6 @@ _PARTLY_COMPILED = (
 
 
 @rule(
-    scope="target",
     severity="warning",
     group="library-component",
     texts=Text(
@@ -48,13 +44,7 @@ _PARTLY_COMPILED = (
         "link to `{target}` what `{other}` links",
     ),
 )
-def unlinked_beside(view: TargetView):
-    for package in view:
-        yield from _list_unlinked(view, package)
-
-
-def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
-    """Programs that include a library's header and are not linked to it, beside a target that is."""
+def unlinked_beside(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     links: dict[str, set[str] | None] = {}
     seen = set()

@@ -29,17 +29,13 @@ from collections.abc import Iterator, Set
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import BOOST_COMPILED, compiled_component
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .boost_components import BoostComponents, find_linked_components, lacks_boost, list_asked_components
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="library-component",
     texts={
         "boost": Text(_MESSAGE, "find_package(Boost REQUIRED COMPONENTS {component}) and link it"),
@@ -50,12 +46,11 @@ _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component
         ),
     },
 )
-def unlinked_boost(view: TargetView):
-    for package in view:
-        asked = list_asked_components(view, package)
-        if asked is not None:
-            yield from _list_not_asked_for(view, package, asked)
-        yield from _list_unlinked(view, package, asked or frozenset())
+def unlinked_boost(view: TargetView, package: Package):
+    asked = list_asked_components(view, package)
+    if asked is not None:
+        yield from _list_not_asked_for(view, package, asked)
+    yield from _list_unlinked(view, package, asked or frozenset())
 
 
 def _list_not_asked_for(view: TargetView, package, asked: Set[str]) -> Iterator[Diagnostic]:

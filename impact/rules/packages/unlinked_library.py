@@ -28,9 +28,7 @@ from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, plain, stem_of
 
 COMPILED = (
@@ -50,43 +48,40 @@ _COMPILED = (*COMPILED, ("gtest/gtest.h", "gtest"), ("gmock/gmock.h", "gmock"))
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text(
         "`{target}` compiles `{header}` but links nothing that brings the library",
         "link the library to `{target}` with target_link_libraries()",
     ),
 )
-def unlinked_library(view: TargetView):
-    for package in view:
-        if package.build.unresolved or package.build_type not in ("catkin", "ament_cmake"):
-            continue
-        includes = [
-            (i, word)
-            for i in package.digest.includes
-            for start, word in _COMPILED
-            if i.targets and i.path.startswith(start) and view.certain(i.conditions)
-        ]
-        if not includes or any("$" in f.name for f in package.build.found):
-            continue
-        targets = {t.name: t for t in package.build.targets}
-        installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
-        seen: set[tuple[str, str]] = set()
-        for include, word in includes:
-            for name in include.targets:
-                target = targets.get(name)
-                if target is None or include.at.path not in target.sources or (word, name) in seen:
-                    continue
-                if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
-                    continue
-                if not view.certain(target.conditions):
-                    continue
-                if _is_brought(view, package, name, include.path, word):
-                    continue
-                seen.add((word, name))
-                subject = include.path.partition("/")[0].removesuffix(".h")
-                data = {"target": name, "header": include.path}
-                yield Diagnostic(include.at, subject, package.name, data, doubts=_doubts(target, word))
+def unlinked_library(view: TargetView, package: Package):
+    if package.build.unresolved or package.build_type not in ("catkin", "ament_cmake"):
+        return
+    includes = [
+        (i, word)
+        for i in package.digest.includes
+        for start, word in _COMPILED
+        if i.targets and i.path.startswith(start) and view.certain(i.conditions)
+    ]
+    if not includes or any("$" in f.name for f in package.build.found):
+        return
+    targets = {t.name: t for t in package.build.targets}
+    installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
+    seen: set[tuple[str, str]] = set()
+    for include, word in includes:
+        for name in include.targets:
+            target = targets.get(name)
+            if target is None or include.at.path not in target.sources or (word, name) in seen:
+                continue
+            if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
+                continue
+            if not view.certain(target.conditions):
+                continue
+            if _is_brought(view, package, name, include.path, word):
+                continue
+            seen.add((word, name))
+            subject = include.path.partition("/")[0].removesuffix(".h")
+            data = {"target": name, "header": include.path}
+            yield Diagnostic(include.at, subject, package.name, data, doubts=_doubts(target, word))
 
 
 def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:

@@ -21,41 +21,27 @@ Not reported
     Programs that are linked to something of which it cannot be seen what it brings; ROS 2.
 """
 
-from collections.abc import Iterator
-
 from ...model.cmake.build import for_tests
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import OPENCV_FUNCTIONS
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, stem_of
+
+# Distros whose cv_bridge hands on every library of OpenCV.
+_WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="library-component",
     texts=Text(
         "`{target}` uses `{function}` but does not link `opencv_{library}`",
         "find_package(OpenCV REQUIRED) and target_link_libraries({target} ${{OpenCV_LIBRARIES}})",
     ),
 )
-def unlinked_opencv(view: TargetView):
-    if view.target.ros != 1:
-        return
-    for package in view:
-        if package.build_type == "catkin":
-            yield from _list_unlinked(view, package)
-
-
-# Distros whose cv_bridge hands on every library of OpenCV.
-_WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
-
-
-def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
-    """Programs that call functions of OpenCV which lie in libraries that nothing they are linked to hands on."""
+def unlinked_opencv(view: TargetView, package: Package):
     build = package.build
-    if build.unresolved:
+    if view.target.ros != 1 or package.build_type != "catkin" or build.unresolved:
         return
     calls = [
         use

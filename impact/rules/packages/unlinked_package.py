@@ -26,15 +26,12 @@ from collections.abc import Iterator
 from ...model.cmake.build import for_tests
 from ...model.package import IncludeUse
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 from .catkin_links import CatkinExports, linked_packages, list_linked, plain
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts={
         "client library": Text(
@@ -46,12 +43,11 @@ from .catkin_links import CatkinExports, linked_packages, list_linked, plain
         ),
     },
 )
-def unlinked_package(view: TargetView):
-    for package in view:
-        if package.build_type in ("catkin", "ament_cmake"):
-            yield from _list_without_client(view, package)
-        if package.build_type == "catkin" and view.target.ros == 1:
-            yield from _list_unlinked(view, package)
+def unlinked_package(view: TargetView, package: Package):
+    if package.build_type in ("catkin", "ament_cmake"):
+        yield from _list_without_client(view, package)
+    if package.build_type == "catkin" and view.target.ros == 1:
+        yield from _list_unlinked(view, package)
 
 
 # Headers of client libraries, whose compiled part every program needs that includes them.

@@ -24,16 +24,13 @@ Not reported
 from ...facts.interface import PRIMITIVES
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-interface-wiring",
     texts={
         "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),
@@ -44,12 +41,7 @@ _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
         ),
     },
 )
-def unlisted_field_package(view: TargetView):
-    for package in view:
-        yield from _list_unknown_types(view, package)
-
-
-def _list_unknown_types(view: TargetView, package):
+def unlisted_field_package(view: TargetView, package: Package):
     generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.active(g.conditions)]
     if not generated:
         return

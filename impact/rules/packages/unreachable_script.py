@@ -38,10 +38,7 @@ from ...model.cmake.build import At
 from ...model.python.programs import ScriptFolder, ScriptSetup, list_started_programs
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..fix_actions import Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Replace, Text, rule
 
 # The commands of setuptools that colcon runs: what they call the folder of programs, and for which build.
 _OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
@@ -49,8 +46,6 @@ _BUILDS = {"install": "colcon build", "develop": "colcon build --symlink-install
 
 
 @rule(
-    scope="target",
-    severity="error",
     preview=True,
     texts={
         "": Text(
@@ -63,20 +58,19 @@ _BUILDS = {"install": "colcon build", "develop": "colcon build --symlink-install
         ),
     },
 )
-def unreachable_script(view: TargetView) -> Iterator[Diagnostic]:
+def unreachable_script(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if view.target.ros == 1:
         return
-    for package in view:
-        setup = ScriptSetup(package)
-        if package.build_type != "ament_python" or not setup.is_known:
-            continue
-        folders = setup.folders
-        if any(folder.text == "$base/bin" for folder in folders.values()):
-            continue
-        wrong = [command for command in _OPTIONS if _is_wrong(package, folders.get(command))]
-        programs = setup.find_programs(view) if wrong else {}
-        if programs:
-            yield _diagnose(view, package, setup, programs, wrong)
+    setup = ScriptSetup(package)
+    if package.build_type != "ament_python" or not setup.is_known:
+        return
+    folders = setup.folders
+    if any(folder.text == "$base/bin" for folder in folders.values()):
+        return
+    wrong = [command for command in _OPTIONS if _is_wrong(package, folders.get(command))]
+    programs = setup.find_programs(view) if wrong else {}
+    if programs:
+        yield _diagnose(view, package, setup, programs, wrong)
 
 
 def _is_wrong(package: Package, folder: ScriptFolder | None) -> bool:

@@ -24,16 +24,13 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _HELP = "bring its source into the workspace, or put a condition on the dependency"
 
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
         "later": Text("`{subject}` was not released in {distro} on that date", _HELP),

@@ -28,17 +28,13 @@ from functools import lru_cache
 
 from ...model.misspelling import is_slip, nearest
 from ...model.view import TargetView
-from ..fix_actions import Remove, Replace
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "no rule": Text("rosdep has no rule for `{subject}` on {platform}", _HELP),
         "no rule, similar": Text("rosdep has no rule for `{subject}` on {platform}", "declare `{replacement}`"),
@@ -53,34 +49,33 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
         ),
     },
 )
-def unresolvable_key(view: TargetView):
+def unresolvable_key(view: TargetView, package: Package):
     target = view.target
-    for package in view:
-        seen = set()
-        for dependency in package.manifest.dependencies:
-            name = dependency.name
-            if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-                continue
-            if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
-                continue
-            if dependency.condition and not view.active_manifest(dependency.condition):
-                continue
-            seen.add(name)
-            if target.ever_released(name) or view.private(name):
-                continue  # unreleased-package says it
-            guess = nearest(name, view.known_names)
-            guess = guess if guess and view.available(guess) else None
-            at = view.manifest_place(package, dependency)
-            if target.known_key(name):
-                data = {"platform": target.platform, "replacement": guess or ""}
-                yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
-            elif guess:
-                fix = _fix(view, package, name, guess)
-                yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
-            elif longer := _parts_of(view, name):
-                yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-            else:
-                yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
+    seen = set()
+    for dependency in package.manifest.dependencies:
+        name = dependency.name
+        if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
+            continue
+        if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
+            continue
+        if dependency.condition and not view.active_manifest(dependency.condition):
+            continue
+        seen.add(name)
+        if target.ever_released(name) or view.private(name):
+            continue  # unreleased-package says it
+        guess = nearest(name, view.known_names)
+        guess = guess if guess and view.available(guess) else None
+        at = view.manifest_place(package, dependency)
+        if target.known_key(name):
+            data = {"platform": target.platform, "replacement": guess or ""}
+            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
+        elif guess:
+            fix = _fix(view, package, name, guess)
+            yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
+        elif longer := _parts_of(view, name):
+            yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
+        else:
+            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
 
 
 def _parts_of(view: TargetView, name: str) -> list[str]:

@@ -27,10 +27,9 @@ from functools import lru_cache
 
 from ...model.cmake.names import MODULES
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
 # Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
@@ -42,8 +41,6 @@ _SET_ALONG = re.compile(
 
 
 @rule(
-    scope="target",
-    severity="error",
     group="missing-find-package",
     texts={
         "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
@@ -56,11 +53,10 @@ _SET_ALONG = re.compile(
         ),
     },
 )
-def unset_library_variable(view: TargetView):
-    for package in view:
-        if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
-            yield from _list_unset(view, package)
-            yield from _list_prefixes(package)
+def unset_library_variable(view: TargetView, package: Package):
+    if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
+        yield from _list_unset(view, package)
+        yield from _list_prefixes(package)
 
 
 def _list_unset(view: TargetView, package):

@@ -21,8 +21,8 @@ Not reported
 """
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
 
 # How names of packages begin or end that are used by what is not read: build tools, programs that people start, and
 # what generated code needs.
@@ -47,48 +47,44 @@ _SILENT = (
 
 
 @rule(
-    scope="target",
     severity="note",
     texts=Text(
         "nothing in `{package}` uses `{subject}`",
         help="remove the dependency if it is not needed for another reason",
     ),
 )
-def unused_dependency(view: TargetView):
-    for package in view:
-        if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
+def unused_dependency(view: TargetView, package: Package):
+    if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
+        return
+    if not package.digest.includes and not package.digest.imports and not package.digest.references:
+        return
+    used = {p.name for need in view.needs(package) for p in need.providers}
+    debian = {p.package for need in view.needs(package) for p in need.providers}
+    used.update(dep for g in package.build.generated for dep, _ in g.dependencies)
+    used.update(e.item for e in package.build.exports)
+    used.update(
+        f.type.split("/")[0] for i in package.digest.interfaces for s in i.definition.sections for f in s.fields
+    )
+    found = {f.name for f in package.build.found}
+    included = {i.path.split("/", 1)[0] for i in package.digest.includes} | {
+        i.module.split(".")[0] for i in package.digest.imports
+    }
+    for name, kinds in view.declared(package).items():
+        if (
+            name in used
+            or name in included
+            or not kinds & {"build", "exec"}
+            or name.startswith(_SILENT)
+            or name.endswith(_SILENT)
+        ):
             continue
-        if not package.digest.includes and not package.digest.imports and not package.digest.references:
+        if (
+            name in found
+            and kinds & {"build"}
+            and any(name in link.item for t in package.build.targets for link in t.links)
+        ):
             continue
-        used = {p.name for need in view.needs(package) for p in need.providers}
-        debian = {p.package for need in view.needs(package) for p in need.providers}
-        used.update(dep for g in package.build.generated for dep, _ in g.dependencies)
-        used.update(e.item for e in package.build.exports)
-        used.update(
-            f.type.split("/")[0] for i in package.digest.interfaces for s in i.definition.sections for f in s.fields
-        )
-        found = {f.name for f in package.build.found}
-        included = {i.path.split("/", 1)[0] for i in package.digest.includes} | {
-            i.module.split(".")[0] for i in package.digest.imports
-        }
-        for name, kinds in view.declared(package).items():
-            if (
-                name in used
-                or name in included
-                or not kinds & {"build", "exec"}
-                or name.startswith(_SILENT)
-                or name.endswith(_SILENT)
-            ):
-                continue
-            if (
-                name in found
-                and kinds & {"build"}
-                and any(name in link.item for t in package.build.targets for link in t.links)
-            ):
-                continue
-            if view.debian(name) & debian or (
-                view.target.version(name) is None and name not in view.workspace.packages
-            ):
-                continue
-            place = next(d for d in package.manifest.dependencies if d.name == name)
-            yield Diagnostic(view.manifest_place(package, place), name, package.name)
+        if view.debian(name) & debian or (view.target.version(name) is None and name not in view.workspace.packages):
+            continue
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        yield Diagnostic(view.manifest_place(package, place), name, package.name)

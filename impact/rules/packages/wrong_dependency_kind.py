@@ -25,9 +25,7 @@ Not reported
 
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 from .clean_machine import doubts_of_chance
 from .dependency_kinds import WrongKind, fix_kind, list_wrong_kinds
 
@@ -35,8 +33,6 @@ _AS_DEPEND = "declare it as `<{tag}>`"
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "build, for tests": Text("`{subject}` is needed to build but is declared only for tests", _AS_DEPEND),
         "build, to run": Text("`{subject}` is needed to build but is declared only to run", _AS_DEPEND),
@@ -44,13 +40,12 @@ _AS_DEPEND = "declare it as `<{tag}>`"
         "run, to build": Text("`{subject}` is needed to run but is declared only to build", _AS_DEPEND),
     },
 )
-def wrong_dependency_kind(view: TargetView):
-    for package in view:
-        for wrong in list_wrong_kinds(view, package):
-            if wrong.lacking == "build":
-                yield _diagnose_build(view, package, wrong)
-            elif wrong.lacking == "run":
-                yield _diagnose_run(view, package, wrong)
+def wrong_dependency_kind(view: TargetView, package: Package):
+    for wrong in list_wrong_kinds(view, package):
+        if wrong.lacking == "build":
+            yield _diagnose_build(view, package, wrong)
+        elif wrong.lacking == "run":
+            yield _diagnose_run(view, package, wrong)
 
 
 def _diagnose_build(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:

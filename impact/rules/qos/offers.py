@@ -4,16 +4,13 @@ Source of the tables: "Quality of service compatibilities" in
 https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-Settings.html.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
 from ...model.flow.edges import FlowPair, display_name, met
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace
-from ..rule import Diagnostic
-from ..text import Text, Value
+from ..rule import Diagnostic, Text, Value
 
 _ROS1 = frozenset(("roscpp", "rospy"))
 

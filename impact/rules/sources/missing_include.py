@@ -36,17 +36,13 @@ from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..fix_actions import Insert
-from ..rule import Diagnostic, rule
-from ..severity import Doubt, Together
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Insert, Text, Together, rule
 
 _LOST = "`{name}` is used without `<{subject}>`, "
 
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "dropped": Text(_LOST + "which {by} {version}[[ of {horizon}]] no longer brings along", "#include <{subject}>"),
         "never": Text(

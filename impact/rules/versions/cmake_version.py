@@ -20,14 +20,12 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.version import at_least, compare
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts={
         "newer": Text(
             "`cmake_minimum_required` asks for CMake {subject}, but the target has {version}",
@@ -39,18 +37,17 @@ from ..text import Text
         ),
     },
 )
-def cmake_version(view: TargetView):
+def cmake_version(view: TargetView, package: Package):
     cmake = view.target.library("cmake")
     if not cmake:
         return
-    for package in view:
-        if package.build.minimum is None:
-            continue
-        text, at = package.build.minimum
-        low, _, high = text.partition("...")
-        if not low[:1].isdigit():
-            continue
-        if compare(low, cmake) > 0:
-            yield Diagnostic(at, low, package.name, {"version": cmake}, kind="newer")
-        elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
-            yield Diagnostic(at, low, package.name, {"version": cmake}, kind="older")
+    if package.build.minimum is None:
+        return
+    text, at = package.build.minimum
+    low, _, high = text.partition("...")
+    if not low[:1].isdigit():
+        return
+    if compare(low, cmake) > 0:
+        yield Diagnostic(at, low, package.name, {"version": cmake}, kind="newer")
+    elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
+        yield Diagnostic(at, low, package.name, {"version": cmake}, kind="older")

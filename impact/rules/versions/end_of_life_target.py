@@ -12,8 +12,7 @@ Severity
 
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 
 @rule(

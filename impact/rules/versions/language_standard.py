@@ -29,9 +29,7 @@ from ...model.view import TargetView
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
 _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"
@@ -39,7 +37,6 @@ _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{n
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "set": Text(f"C++{{standard}} is set, but {_NEEDS}", _HELP),
         "flag": Text(f"C++{{standard}} is set by a flag, but {_NEEDS}", _HELP),

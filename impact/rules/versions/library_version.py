@@ -22,42 +22,38 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.providers.library import satisfies
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text(
         "CMake asks for {subject} {requested}, but the target has {version}",
         help="ask for a version that all targets have, or for no version",
     ),
 )
-def library_version(view: TargetView):
-    for package in view:
-        for found in package.build.found:
-            if not found.version or not view.active(found.conditions) or found.name in view.workspace.packages:
-                continue
-            answer = satisfies(view.target, found.name, found.version, found.exact)
-            if answer is None or answer.holds:
-                continue
-            # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
-            others = [f for f in package.build.found if f.name == found.name and f is not found]
-            if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
-                continue
-            yield Diagnostic(
-                found.at,
-                found.name,
-                package.name,
-                {"version": answer.version, "requested": found.version},
-                doubts=(
-                    found.required or Doubt.DISPENSABLE,
-                    view.certain(found.conditions) or Doubt.CONDITIONAL,
-                ),
-            )
+def library_version(view: TargetView, package: Package):
+    for found in package.build.found:
+        if not found.version or not view.active(found.conditions) or found.name in view.workspace.packages:
+            continue
+        answer = satisfies(view.target, found.name, found.version, found.exact)
+        if answer is None or answer.holds:
+            continue
+        # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
+        others = [f for f in package.build.found if f.name == found.name and f is not found]
+        if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
+            continue
+        yield Diagnostic(
+            found.at,
+            found.name,
+            package.name,
+            {"version": answer.version, "requested": found.version},
+            doubts=(
+                found.required or Doubt.DISPENSABLE,
+                view.certain(found.conditions) or Doubt.CONDITIONAL,
+            ),
+        )
 
 
 def _holds(view: TargetView, found) -> bool:

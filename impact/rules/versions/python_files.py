@@ -1,7 +1,5 @@
 """What a Python does not accept: that of the target, or, where that is Python 2, that of the newest distro."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
@@ -10,9 +8,7 @@ from ...model.package import ImportUse, SyntaxUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
-from ..rule import Diagnostic
-from ..severity import Doubt, doubts_of_place
-from ..upcoming import Upcoming, rate_upcoming
+from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
 
 
 class Refused(NamedTuple):

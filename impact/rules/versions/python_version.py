@@ -23,14 +23,12 @@ from collections.abc import Iterator
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
-from ..rule import rule
-from ..text import Text
+from ..rule import Text, rule
 from .python_files import Refused, report_refused
 
 
 @rule(
     scope="target",
-    severity="error",
     texts={
         "python 2": Text(
             "{subject} is a syntax error in Python {version}[[ ({horizon})]]", "use syntax that Python 3 accepts"

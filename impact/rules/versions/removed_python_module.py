@@ -28,15 +28,12 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
 from ...targets.target import Target
-from ..rule import rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Doubt, Text, rule
 from .python_files import Refused, report_refused
 
 
 @rule(
     scope="target",
-    severity="error",
     group="python-version",
     texts=Text(
         "the standard library of Python {version} does not have `{subject}`[[ ({horizon})]]",

@@ -39,8 +39,7 @@ from ....edges.console import counted
 from ...model.build_order import build_order
 from ...model.cmake.build import At
 from ...model.view import TargetView
-from ..rule import Diagnostic, rule
-from ..text import Text
+from ..rule import Diagnostic, Text, rule
 
 if TYPE_CHECKING:
     from ...model.install_space import Binary, InstallSpace
@@ -62,16 +61,13 @@ _HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
 
 @rule(
     scope="install_space",
-    severity="error",
     texts={
         "symbol": Text(
             "`{subject}`[[ of `{library}`]][[ and {symbols}]], needed by `{file}`[[ and {files}]], is not found "
             "in any library that is loaded",
             _HELP,
         ),
-        "gone": Text(
-            "`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], was removed: {there}", _HELP
-        ),
+        "gone": Text("`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], was removed: {there}", _HELP),
         "missing": Text(
             "`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], is not available: {there}", _HELP
         ),

@@ -22,10 +22,9 @@ Not reported
 """
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.version import compare
-from ..rule import Diagnostic, rule
-from ..severity import Doubt
-from ..text import Text
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _HOLDS = {
     "version_lt": lambda c: c < 0,
@@ -38,37 +37,34 @@ _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte
 
 
 @rule(
-    scope="target",
-    severity="error",
     texts=Text(
         "package.xml asks for `{subject}` {bound}, but the target has {version}",
         help="relax the bound, or update that target",
     ),
 )
-def unsatisfied_version(view: TargetView):
-    for package in view:
-        seen = set()
-        for dependency in package.manifest.dependencies:
-            if not dependency.bounds or dependency.kind in ("conflict", "replace", "group") or dependency.name in seen:
-                continue
-            if dependency.condition and not view.active_manifest(dependency.condition):
-                continue
-            here = view.workspace.packages.get(dependency.name)
-            version = (
-                here.manifest.version
-                if here
-                else view.target.version(dependency.name) or view.target.library(dependency.name)
-            )
-            if not version:
-                continue
-            for name, bound in dependency.bounds:
-                if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
-                    seen.add(dependency.name)
-                    yield Diagnostic(
-                        view.manifest_place(package, dependency),
-                        dependency.name,
-                        package.name,
-                        {"version": version, "bound": f"{_SIGN[name]} {bound}"},
-                        doubts=(Doubt.DISTURBS,) if here else (),
-                    )
-                    break
+def unsatisfied_version(view: TargetView, package: Package):
+    seen = set()
+    for dependency in package.manifest.dependencies:
+        if not dependency.bounds or dependency.kind in ("conflict", "replace", "group") or dependency.name in seen:
+            continue
+        if dependency.condition and not view.active_manifest(dependency.condition):
+            continue
+        here = view.workspace.packages.get(dependency.name)
+        version = (
+            here.manifest.version
+            if here
+            else view.target.version(dependency.name) or view.target.library(dependency.name)
+        )
+        if not version:
+            continue
+        for name, bound in dependency.bounds:
+            if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
+                seen.add(dependency.name)
+                yield Diagnostic(
+                    view.manifest_place(package, dependency),
+                    dependency.name,
+                    package.name,
+                    {"version": version, "bound": f"{_SIGN[name]} {bound}"},
+                    doubts=(Doubt.DISTURBS,) if here else (),
+                )
+                break

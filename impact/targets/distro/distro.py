@@ -12,11 +12,13 @@ import functools
 import operator
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
 from ....edges.console import UserError
+from ....edges.memory import cached_method
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
@@ -127,19 +129,7 @@ class DistroTarget(Target):
         self.platform = self._choose_platform(platform, notes)
         self.notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
-        self._library_cells: dict[str, Library] | None = None
-        self._released: Mapping[str, _Released] | None = None
-        self._versions: dict[str, str | None] = {}
-        self._names: frozenset[str] | None = None
-        self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
-        self._arrivals: dict[str, tuple[tuple[str, str | None], ...]] = {}
-        self._held: dict[str, bool] = {}
-        self._keys: dict[str, Resolution | None] = {}
-        self._all_keys: dict[str, Resolution] | None = None
-        self._by_debian: dict[str, tuple[str, ...]] | None = None
-        self._with_manifests: bool | None = None
         self._changes: ChangeTable | None = None
-        self._availabilities: Availabilities | None = None
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
@@ -218,33 +208,25 @@ class DistroTarget(Target):
             return self._facts.platform
         return supported[0] if supported else ""
 
-    # Released packages
-
+    @cached_method
     def _packages(self) -> Mapping[str, _Released]:
-        if self._released is None:
-            self._released = _read_released(self._data, self._id, self._cut)
-        return self._released
+        return _read_released(self._data, self._id, self._cut)
 
+    @cached_method
     def version(self, package: str) -> str | None:
-        if package not in self._versions:
-            self._versions[package] = self._version(package)
-        return self._versions[package]
-
-    def _version(self, package: str) -> str | None:
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
         return _upstream(released.version) if released else None
 
+    @cached_method
     def released_names(self) -> frozenset[str]:
         """All packages released here, overrides included."""
-        if self._names is None:
-            names = set(self._packages())
-            for name, version in self._overrides.items():
-                if self._is_package(name):
-                    names.add(name) if version else names.discard(name)
-            self._names = frozenset(names)
-        return self._names
+        names = set(self._packages())
+        for name, version in self._overrides.items():
+            if self._is_package(name):
+                names.add(name) if version else names.discard(name)
+        return frozenset(names)
 
     def _is_package(self, name: str) -> bool:
         """Whether an override means a ROS package: one released ever, or a name of no platform library."""
@@ -260,22 +242,21 @@ class DistroTarget(Target):
         """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
         return tuple((day_of(ts), version) for ts, version in self._steps(package))
 
+    @cached_method
     def arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
         """The same with the days on which the versions could be had: those of the sync that brought each, and before
         the distro's first known sync of the commit. What no sync has brought yet is left out; of versions that one
         sync brought, the last counts."""
-        if package not in self._arrivals:
-            syncs = self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
-            # Commits up to the day before the first known sync were available on their own day, as far as is known.
-            early = end_of_day(syncs[0][0]) - 86400 if syncs else None
-            days: dict[str, str | None] = {}
-            for ts, version in self._steps(package):
-                if early is None or ts <= early:
-                    days[day_of(ts)] = version
-                elif day := next((day for day, cut in syncs if cut >= ts), ""):
-                    days[day] = version
-            self._arrivals[package] = tuple(days.items())
-        return self._arrivals[package]
+        syncs = self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
+        # Commits up to the day before the first known sync were available on their own day, as far as is known.
+        early = end_of_day(syncs[0][0]) - 86400 if syncs else None
+        days: dict[str, str | None] = {}
+        for ts, version in self._steps(package):
+            if early is None or ts <= early:
+                days[day_of(ts)] = version
+            elif day := next((day for day, cut in syncs if cut >= ts), ""):
+                days[day] = version
+        return tuple(days.items())
 
     def _steps(self, package: str) -> list[tuple[int, str | None]]:
         """(moment, version) of every release of a package in this distro."""
@@ -330,23 +311,28 @@ class DistroTarget(Target):
         )
         return (row[0], row[1] or "", row[2] or "") if row else None
 
-    # Declared dependencies
-
-    @property
+    @cached_property
     def knows_manifests(self) -> bool:  # type: ignore[override]
-        if self._with_manifests is None:
-            row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
-            self._with_manifests = row is not None
-        return self._with_manifests
+        row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
+        return row is not None
 
+    @cached_method
     def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the released package declares, None when no manifest of it is known in this distro.
 
         Where this very version's manifest is not known, the nearest earlier one stands, else the nearest later one.
         """
-        if package not in self._declared:
-            self._declared[package] = self._read_dependencies(package)
-        return self._declared[package]
+        manifest = self._manifest(package)
+        if manifest is None:
+            return None
+        found = []
+        for line in manifest[0].splitlines():
+            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
+            if condition and not self.holds(condition):
+                continue
+            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
+            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
+        return tuple(found)
 
     def _manifest(self, package: str) -> tuple[str, str] | None:
         version = self.version(package)
@@ -382,19 +368,6 @@ class DistroTarget(Target):
         wanted = tuple(version_key(version))
         later = min((key for key in known if key > wanted), default=None)
         return frozenset() if wanted in known or later is None else _come_along(known[later])
-
-    def _read_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
-        manifest = self._manifest(package)
-        if manifest is None:
-            return None
-        found = []
-        for line in manifest[0].splitlines():
-            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
-            if condition and not self.holds(condition):
-                continue
-            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
-            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
-        return tuple(found)
 
     def build_type(self, package: str) -> str:
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
@@ -469,7 +442,7 @@ class DistroTarget(Target):
                     self._neighbours[name] = DistroTarget(name, data=self._data)
                 yield self._neighbours[name]
 
-    @functools.cached_property
+    @cached_property
     def _nearest(self) -> list[str]:
         """The other distros of this generation, the nearest first."""
         names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
@@ -488,11 +461,10 @@ class DistroTarget(Target):
         )
         return frozenset(name for (name,) in rows)
 
+    @cached_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
-        if condition not in self._held:
-            self._held[condition] = condition_holds(condition, self._variables)
-        return self._held[condition]
+        return condition_holds(condition, self._variables)
 
     @property
     def _variables(self) -> dict[str, str]:
@@ -520,15 +492,14 @@ class DistroTarget(Target):
 
     # rosdep keys
 
+    @cached_method
     def resolve(self, key: str) -> Resolution | None:
-        if key not in self._keys:
-            os_name, release = split_platform(self.platform)
-            found = self._resolve(key, os_name, release, self._rule_ts)
-            if found is None and self.end_of_life and self.end_of_life < self.date:
-                # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
-                found = self._resolve(key, os_name, release, end_of_day(self.end_of_life))
-            self._keys[key] = found
-        return self._keys[key]
+        os_name, release = split_platform(self.platform)
+        found = self._resolve(key, os_name, release, self._rule_ts)
+        if found is None and self.end_of_life and self.end_of_life < self.date:
+            # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
+            found = self._resolve(key, os_name, release, end_of_day(self.end_of_life))
+        return found
 
     def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
         for system in (os_name, "*"):
@@ -559,49 +530,47 @@ class DistroTarget(Target):
 
     def keys_of(self, debian_package: str) -> tuple[str, ...]:
         """rosdep keys that install this system package on the platform, sorted; shortest names first."""
-        if self._by_debian is None:
-            found: dict[str, list[str]] = {}
-            for key, resolution in self._resolved_keys().items():
-                if resolution.manager in ("apt", "dnf", "yum"):
-                    for name in resolution.packages:
-                        found.setdefault(name, []).append(key)
-            self._by_debian = {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
         return self._by_debian.get(debian_package, ())
 
+    @cached_property
+    def _by_debian(self) -> dict[str, tuple[str, ...]]:
+        found: dict[str, list[str]] = {}
+        for key, resolution in self._resolved_keys().items():
+            if resolution.manager in ("apt", "dnf", "yum"):
+                for name in resolution.packages:
+                    found.setdefault(name, []).append(key)
+        return {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
+
+    @cached_method
     def _resolved_keys(self) -> dict[str, Resolution]:
         """Every key that resolves here with its resolution, read at once."""
-        if self._all_keys is None:
-            os_name, release = split_platform(self.platform)
-            moments = [self._rule_ts]
-            if self.end_of_life and self.end_of_life < self.date:
-                moments.append(end_of_day(self.end_of_life))
-            found: dict[str, Resolution] = {}
-            for ts in moments:
-                seen: set[str] = set()
-                for system in (os_name, "*"):
-                    for key, rule, _ in self._data.rows(
-                        "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
-                    ):
-                        if rule is None or key in seen:
-                            continue
-                        seen.add(key)
-                        resolution = resolve_rule(decode_rule(rule), os_name, release)
-                        if resolution and key not in found:
-                            found[key] = resolution
-            self._all_keys = found
-        return self._all_keys
+        os_name, release = split_platform(self.platform)
+        moments = [self._rule_ts]
+        if self.end_of_life and self.end_of_life < self.date:
+            moments.append(end_of_day(self.end_of_life))
+        found: dict[str, Resolution] = {}
+        for ts in moments:
+            seen: set[str] = set()
+            for system in (os_name, "*"):
+                for key, rule, _ in self._data.rows(
+                    "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
+                ):
+                    if rule is None or key in seen:
+                        continue
+                    seen.add(key)
+                    resolution = resolve_rule(decode_rule(rule), os_name, release)
+                    if resolution and key not in found:
+                        found[key] = resolution
+        return found
 
-    # Platform libraries
-
+    @cached_method
     def _libraries(self) -> dict[str, Library]:
-        if self._library_cells is None:
-            self._library_cells = {
-                name: Library(version, source)
-                for name, version, source in self._data.rows(
-                    "SELECT name, version, source FROM library WHERE platform = ?", (self.platform,)
-                )
-            }
-        return self._library_cells
+        return {
+            name: Library(version, source)
+            for name, version, source in self._data.rows(
+                "SELECT name, version, source FROM library WHERE platform = ?", (self.platform,)
+            )
+        }
 
     @property
     def python(self) -> int:  # type: ignore[override]
@@ -639,8 +608,6 @@ class DistroTarget(Target):
         own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
         return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
 
-    # Known upstream changes
-
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""
         if self._changes is None and self._data is snapshots.default():
@@ -656,11 +623,13 @@ class DistroTarget(Target):
                 del _tables[next(iter(_tables))]
 
     def availability(self, symbol: Symbol) -> Availability:
-        if self._availabilities is None:
-            from ..availability import Availabilities
-
-            self._availabilities = Availabilities(self)
         return self._availabilities.on_horizon(symbol)
+
+    @cached_property
+    def _availabilities(self) -> Availabilities:
+        from ..availability import Availabilities
+
+        return Availabilities(self)
 
     def changes(self) -> ChangeTable:
         if not self.has_changes():

@@ -5,8 +5,6 @@ and indexes may lie anywhere, since nothing but names and versions of packages i
 texts are shown, lie in the workspace unless the user names the configuration.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Mapping

@@ -3,18 +3,18 @@
 As ld.so(8) describes: DT_RUNPATH or DT_RPATH of the file, LD_LIBRARY_PATH, the cache, the standard folders.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import IO
 
 from ....edges.files import open_regular, read_start, too_large
 from ....edges.limits import limits
+from ....edges.memory import cached_method
 from ...facts import elf
 from ...facts.elf import Elf, stem_and_version
 
@@ -43,8 +43,6 @@ class Loader:
         sourced = [folder for folder in environment.get("LD_LIBRARY_PATH", "").split(":") if folder]
         self._folders = [*sourced, *folders]
         self._heads: dict[str, tuple[str, int] | None] = {}
-        self._read: dict[str, Elf | None] = {}
-        self._defined: dict[str, frozenset[str] | None] = {}
 
     @property
     def knows_prefixes(self) -> bool:
@@ -99,14 +97,11 @@ class Loader:
         found = self._elf(path)
         return frozenset(found.offers) if found else frozenset()
 
+    @cached_method
     def _elf(self, path: str) -> Elf | None:
-        if path not in self._read:
-            try:
-                with open_library(path) as file:
-                    self._read[path] = elf.read(file)
-            except OSError:
-                self._read[path] = None
-        return self._read[path]
+        with suppress(OSError), open_library(path) as file:
+            return elf.read(file)
+        return None
 
     def loaded(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[str, ...] | None:
         """The libraries that are loaded with a file, those that they need in turn included; None where one is not
@@ -126,15 +121,12 @@ class Loader:
                 stack.append((library, os.path.dirname(os.path.realpath(path))))
         return tuple(found)
 
+    @cached_method
     def defined(self, path: str) -> frozenset[str] | None:
         """The C++ symbols that a library has; None for one that cannot be read."""
-        if path not in self._defined:
-            try:
-                with open_library(path) as file:
-                    self._defined[path] = elf.defined(file)
-            except OSError:
-                self._defined[path] = None
-        return self._defined[path]
+        with suppress(OSError), open_library(path) as file:
+            return elf.defined(file)
+        return None
 
     @cached_property
     def _everything(self) -> frozenset[str]:

@@ -3,8 +3,6 @@
 Both answer alike: yes, no, or not known. A no is said where it is sure.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Container, Mapping

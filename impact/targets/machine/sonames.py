@@ -5,8 +5,6 @@ The first is a file list and complete for its platforms. The second tells of som
 which sonames a platform cannot have; that is how platforms without a file list are judged.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path

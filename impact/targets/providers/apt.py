@@ -1,13 +1,12 @@
 """Which Debian packages come along with one that is installed: the shipped graph, made by databuild/apt.py."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache, cached_property
 from pathlib import Path
 
 import msgspec
 
+from ....edges.memory import cached_method
 from ..snapshot import DATA, SnapshotError
 
 INFERRED = 1 << 15
@@ -34,19 +33,16 @@ class Apt:
         self._place = {name: place for place, name in enumerate(graph.packages)}
         self._inferred = platform not in graph.suites
         self._mask = INFERRED - 1 if self._inferred else 1 << graph.suites.index(platform)
-        self._whole: dict[str, frozenset[str]] = {}
 
     @cached_property
     def base(self) -> frozenset[str]:
         """Packages of every machine that builds."""
         return frozenset(self._graph.packages[place] for place in self._graph.base)
 
+    @cached_method
     def brought_by(self, package: str) -> frozenset[str]:
         """A package and those that are installed along with it, as far as rosdep keys install them."""
-        known = self._whole.get(package)
-        if known is None:
-            known = self._whole[package] = frozenset(self._brought_by(package))
-        return known
+        return frozenset(self._brought_by(package))
 
     def _brought_by(self, package: str) -> Iterator[str]:
         yield package

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
+from ....edges.memory import cached_method
 from ....edges.reach import Reach
 from ..snapshot import DATA, SnapshotError
 from ..version import at_least, parts
@@ -57,19 +58,16 @@ class Includes:
         for owner, headers in table.owners.items():
             for header in headers:
                 self.owners_of[header] = (*self.owners_of.get(header, ()), owner)
-        self._states: dict[tuple[str, str], tuple[_State, ...]] = {}
         self._read: dict[str, frozenset[tuple[int, ...]]] = {}
 
+    @cached_method
     def states(self, owner: str, header: str) -> tuple[_State, ...]:
         """(first version, what it includes; None: no such header), oldest first."""
-        known = self._states.get((owner, header))
-        if known is None:
-            paths, found = self.table.paths, []
-            for run in self.table.owners[owner][header].split(";"):
-                version, _, text = run.partition(" ")
-                found.append((parts(version), None if text == "-" else tuple(paths[int(n)] for n in text.split())))
-            known = self._states[owner, header] = tuple(found)
-        return known
+        paths, found = self.table.paths, []
+        for run in self.table.owners[owner][header].split(";"):
+            version, _, text = run.partition(" ")
+            found.append((parts(version), None if text == "-" else tuple(paths[int(n)] for n in text.split())))
+        return tuple(found)
 
     def included(self, owner: str, header: str, version: str) -> tuple[str, ...] | None:
         """What a header includes in a version; None when there is no such header in it, or none is known to be."""
@@ -166,26 +164,18 @@ class HeadersOfMachine:
     ):
         self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
         self._known: dict[str, _Found | None] = {}
-        self._stored: dict[str, tuple[Included, str, str] | None] = {}
-        self._interfaces: dict[str, message_headers.Definitions] = {}
         self._holding: dict[tuple[Condition, ...], bool] = {}
-        self._versions: dict[str, str | None] = {}
         self._reach = Reach(self._look)
         # Of what was reached: headers of the standard libraries, and those of which nothing is known here.
         self._plain = self._unknown = 0
         # The headers that tells() was asked of, and those that it denies.
         self._asked = self._silent = 0
-        self._masks: dict[frozenset[str], tuple[int, int]] = {}
-        self._brought: dict[str, Brought] = {}
-        self._outside: dict[frozenset[str], frozenset[str]] = {}
-        self._named: dict[tuple[frozenset[str], int], int] = {}
 
+    @cached_method
     def version(self, owner: str) -> str | None:
         """The version of an owner here."""
-        if owner not in self._versions:
-            library = owner == "gcc" or owner in self._data.table.libraries
-            self._versions[owner] = self._version(owner, library) or (self._version(owner, False) if library else None)
-        return self._versions[owner]
+        library = owner == "gcc" or owner in self._data.table.libraries
+        return self._version(owner, library) or (self._version(owner, False) if library else None)
 
     @cached_property
     def gcc(self) -> int:
@@ -275,13 +265,12 @@ class HeadersOfMachine:
         stored = self._standing_for(package)
         return stored is not None and header in stored[0].headers
 
+    @cached_method
     def _standing_for(self, package: str) -> tuple[Included, str, str] | None:
         """What a package's headers include, the stored version that stands for the one here, and that one."""
-        if package not in self._stored:
-            version, included = self._version(package, False), self.surfaces.included(package, self.ros)
-            standing = included.stands_for(version) if version and included is not None else None
-            self._stored[package] = (included, standing, version) if included and standing and version else None
-        return self._stored[package]
+        version, included = self._version(package, False), self.surfaces.included(package, self.ros)
+        standing = included.stands_for(version) if version and included is not None else None
+        return (included, standing, version) if included and standing and version else None
 
     def _may_hold(self, conditions: tuple[Condition, ...]) -> bool:
         if not conditions:
@@ -339,22 +328,19 @@ class HeadersOfMachine:
         others = message_headers.included_by(header, self.ros, self._interfaces_of(package), apart) or ()
         return _Found(owner, version, tuple(dict.fromkeys((*always, *others))))
 
+    @cached_method
     def _interfaces_of(self, package: str) -> message_headers.Definitions:
-        if package not in self._interfaces:
-            stored = self._standing_for(package)
-            history = self.surfaces.history(package, self.ros) if stored is not None else None
-            found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
-            self._interfaces[package] = message_headers.Definitions(found)
-        return self._interfaces[package]
+        stored = self._standing_for(package)
+        history = self.surfaces.history(package, self.ros) if stored is not None else None
+        found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
+        return message_headers.Definitions(found)
 
+    @cached_method
     def brought(self, header: str) -> Brought:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
-        known = self._brought.get(header)
-        if known is None:
-            reached, along = self._reach.masks(header)
-            parts = (reached | along, reached & self._unknown, reached & self._plain)
-            known = self._brought[header] = Brought(*(frozenset(self._reach.names(mask)) for mask in parts))
-        return known
+        reached, along = self._reach.masks(header)
+        parts = (reached | along, reached & self._unknown, reached & self._plain)
+        return Brought(*(frozenset(self._reach.names(mask)) for mask in parts))
 
     def _look(self, header: str) -> tuple[Iterable[str], Iterable[str]]:
         """The headers that one includes, or all that a standard one reads."""
@@ -368,33 +354,29 @@ class HeadersOfMachine:
             self._unknown |= self._reach.bit(header)
         return (), standard
 
+    @cached_method
     def _masks_of(self, headers: frozenset[str]) -> tuple[int, int]:
         """The headers that these lead to, and with them those that standard ones among them read."""
-        known = self._masks.get(headers)
-        if known is None:
-            reached = whole = 0
-            for header in headers:
-                alone, along = self._reach.masks(header)
-                reached |= alone
-                whole |= along
-            known = self._masks[headers] = reached, whole | reached
-        return known
+        reached = whole = 0
+        for header in headers:
+            alone, along = self._reach.masks(header)
+            reached |= alone
+            whole |= along
+        return reached, whole | reached
 
     def mask(self, headers: frozenset[str]) -> int:
         """Everything that these headers bring along here, as bits() has it."""
         return self._masks_of(headers)[1]
 
+    @cached_method
     def named(self, headers: frozenset[str], standard: int) -> int:
         """The names of the standard libraries that these headers bring along here, as bits of standard.bit_of().
 
         standard: year of the C++ standard that they are compiled under."""
-        known = self._named.get((headers, standard))
-        if known is None:
-            known = 0
-            reached, _ = self._masks_of(headers)
-            for header in self._reach.names(reached & self._plain):
-                known |= named_by(header, self.gcc, standard) or 0
-            self._named[headers, standard] = known
+        known = 0
+        reached, _ = self._masks_of(headers)
+        for header in self._reach.names(reached & self._plain):
+            known |= named_by(header, self.gcc, standard) or 0
         return known
 
     def brings(self, name: str, headers: frozenset[str], standard: int) -> bool:
@@ -410,13 +392,11 @@ class HeadersOfMachine:
         headers are, and of some names where they are defined."""
         return bool(bit_of(name)) and (self.gcc >= oldest() or name in DEFINED_IN)
 
+    @cached_method
     def outside(self, headers: frozenset[str]) -> frozenset[str]:
         """The headers among all that these bring along of which nothing is known here."""
-        known = self._outside.get(headers)
-        if known is None:
-            reached, _ = self._masks_of(headers)
-            known = self._outside[headers] = frozenset(self._reach.names(reached & self._unknown))
-        return known
+        reached, _ = self._masks_of(headers)
+        return frozenset(self._reach.names(reached & self._unknown))
 
     def tells(self, header: str) -> bool:
         """False for a header that is made from an interface of which no definition is known here, so that neither its

@@ -1,7 +1,5 @@
 """Components of platform libraries: which are compiled, and which are gone in which version."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 Sources: gencpp's templates; rosidl_generator_cpp's, whose parts of a header lie in `detail/` since 0.9 (Foxy).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import cached_property, lru_cache

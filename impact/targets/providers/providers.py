@@ -5,8 +5,6 @@ SQLite, together with the reviewed facts of `data/providers.yaml` that no index 
 remembers it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import sqlite3
 import threading
@@ -17,6 +15,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ....edges.memory import cached_method
 from ...cache import cache_folder
 from ...facts.store import FAULTS
 from .. import unpacked
@@ -83,17 +82,12 @@ class Providers:
         self._connection: sqlite3.Connection | None = None
         self._reader = 0  # the process that opened it
         self._sets: dict[int, tuple[Provider, ...]] = {}
-        self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
-        self._releases: dict[str, tuple[HeaderSpan, ...]] = {}
-        self._headers: dict[str, tuple[Provider, ...]] = {}
-        self._found: dict[tuple[str, str], tuple[int, int] | None] = {}
         self._patterns: dict[str, tuple[int, ...]] = {}
 
     def __reduce__(self):
         return Providers, (self._data, self._cache)
 
-    # Lookups
-
+    @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
 
@@ -101,12 +95,6 @@ class Providers:
         released package `pkg` is a convention which the caller adds; what is here was seen in a file list. Released
         packages of both ROS generations are listed; the caller knows which its target has.
         """
-        known = self._headers.get(path)
-        if known is None:
-            known = self._headers[path] = tuple(self._header(path))
-        return known
-
-    def _header(self, path: str) -> list[Provider]:
         found = self._facts("header", path)
         system = self._system("header", path)
         released = [
@@ -124,7 +112,7 @@ class Providers:
             found += [*own, system[0], *self._vendors(system[0].name), *system[1:], *released]
         else:
             found += released or self._by_prefix(path)
-        return _once(found)
+        return tuple(_once(found))
 
     def cmake(self, name: str) -> list[Provider]:
         """Who answers find_package(name), best first. Where only another letter case is known, sure is False.
@@ -235,8 +223,6 @@ class Providers:
         """Platforms whose system packages are in the table."""
         return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
 
-    # Headers of released packages over time
-
     def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
 
@@ -246,13 +232,11 @@ class Providers:
             return self._pattern(number)
         return ()
 
+    @cached_method
     def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package whose source trees were read, as spans by distro."""
-        known = self._releases.get(package)
-        if known is None:
-            rows = self._rows("SELECT pattern FROM ros_package WHERE name = ?", package)
-            known = self._releases[package] = self._pattern(rows[0][0]) if rows else ()
-        return known
+        rows = self._rows("SELECT pattern FROM ros_package WHERE name = ?", package)
+        return self._pattern(rows[0][0]) if rows else ()
 
     def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
         """Whether a package's release in a distro has a header; None when that release's tree is not known."""
@@ -282,8 +266,6 @@ class Providers:
                 return [provider._replace(sure=False) for provider in found]
         return []
 
-    # Rows
-
     def _facts(self, kind: str, name: str) -> list[Provider]:
         entries = self._reviewed.get((kind, name))
         return [] if entries is None else _decode(entries)
@@ -304,13 +286,11 @@ class Providers:
             known = self._sets[number] = tuple(_decode(entries))
         return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
 
+    @cached_method
     def _row(self, table: str, name: str) -> tuple[int, int] | None:
         """(provider, platforms) of a name in one of the tables of the system's packages, None when it is not there."""
-        key = table, name
-        if key not in self._found:
-            rows = self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
-            self._found[key] = rows[0] if rows else None
-        return self._found[key]
+        rows = self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
+        return rows[0] if rows else None
 
     def _ros(self, table: str, name: str) -> list[Provider]:
         for (packages,) in self._rows(f"SELECT packages FROM {table} WHERE name = ?", name):
@@ -323,14 +303,11 @@ class Providers:
             return ()
         return tuple(platform for place, platform in enumerate(self.platforms) if row[1] >> place & 1)
 
+    @cached_method
     def _pattern(self, number: int) -> tuple[HeaderSpan, ...]:
-        known = self._spans.get(number)
-        if known is None:
-            ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
-            spans = (line.split(" ") for line in text.split("\n") if line)
-            known = tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
-            self._spans[number] = known
-        return known
+        ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
+        spans = (line.split(" ") for line in text.split("\n") if line)
+        return tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
 
     @cached_property
     def _folded_cmake(self) -> dict[str, list[str]]:
@@ -388,9 +365,6 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
         span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
         for span in spans
     )
-
-
-# The file
 
 
 class _Info(msgspec.Struct, frozen=True):

@@ -8,115 +8,73 @@ standards in use, and listing the standard headers that it read. Where standards
 counts. It tells of GCC 5 and 7, of which names brought more than later versions did.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import msgspec
 
 from ..snapshot import DATA, SnapshotError
 
-_INTEGERS = (
-    *("int8_t", "int16_t", "int32_t", "int64_t", "uint8_t", "uint16_t", "uint32_t", "uint64_t"),
-    *("intptr_t", "uintptr_t"),
-)
-_STL_ALGORITHMS = (
-    *("sort", "stable_sort", "find_if", "copy_n", "copy_if", "remove_if", "transform", "count_if", "count"),
-    *("max_element", "min_element", "minmax_element", "reverse", "replace", "for_each", "unique", "binary_search"),
-    *("upper_bound", "nth_element", "any_of", "all_of", "none_of", "clamp", "shuffle", "random_shuffle", "generate"),
-    *("set_difference", "partial_sort", "rotate", "search", "merge", "includes", "next_permutation", "partition"),
-    *("remove", "find", "minmax"),
-)
+_DEFINED: dict[tuple[str, ...], str] = {
+    ("algorithm", "bits/stl_algo"): (
+        "sort stable_sort find_if copy_n copy_if remove_if transform count_if count max_element min_element "
+        "minmax_element reverse replace for_each unique binary_search upper_bound nth_element any_of all_of none_of "
+        "clamp shuffle random_shuffle generate set_difference partial_sort rotate search merge includes "
+        "next_permutation partition remove find minmax"
+    ),
+    ("algorithm", "bits/stl_algobase"): "min max fill copy lower_bound",
+    ("any",): "any",
+    ("array",): "array",
+    ("atomic",): "atomic",
+    ("bitset",): "bitset",
+    ("cmath", "math.h"): "isnan isinf isfinite sqrt hypot fabs atan2 round",
+    ("complex",): "complex",
+    ("condition_variable",): "condition_variable",
+    ("cstdint",): "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t",
+    ("deque", "bits/stl_deque"): "deque",
+    ("fstream",): "ifstream ofstream",
+    ("functional",): "bind mem_fn placeholders::_1 placeholders::_2 placeholders::_3",
+    ("functional", "bits/refwrap"): "ref cref",
+    ("functional", "bits/std_function"): "function",
+    ("future",): "future promise async",
+    ("iomanip",): "setprecision setw setfill",
+    ("iostream",): "cout cerr",
+    ("iterator",): "ostream_iterator istream_iterator",
+    ("limits",): "numeric_limits",
+    ("list", "bits/stl_list"): "list",
+    ("map", "bits/stl_map"): "map",
+    ("memory", "bits/shared_ptr"): "shared_ptr weak_ptr make_shared",
+    ("memory", "bits/unique_ptr"): "unique_ptr make_unique",
+    ("mutex",): "recursive_mutex call_once once_flag",
+    ("mutex", "bits/std_mutex"): "mutex lock_guard",
+    ("mutex", "bits/unique_lock"): "unique_lock",
+    ("numeric",): "accumulate iota inner_product",
+    ("optional",): "optional nullopt",
+    ("queue",): "queue priority_queue",
+    ("regex",): "regex smatch",
+    ("set", "bits/stl_set"): "set",
+    ("shared_mutex",): "shared_mutex shared_lock",
+    ("sstream",): "stringstream ostringstream istringstream",
+    ("stack",): "stack",
+    ("stdexcept",): "runtime_error logic_error invalid_argument out_of_range length_error domain_error",
+    ("string_view",): "string_view",
+    ("system_error",): "system_error",
+    ("thread", "bits/std_thread"): "thread",
+    ("thread", "bits/this_thread_sleep"): "this_thread::sleep_for this_thread::sleep_until",
+    ("tuple",): "tuple make_tuple",
+    ("unordered_map",): "unordered_map",
+    ("unordered_set",): "unordered_set",
+    ("utility",): "exchange",
+    ("utility", "bits/stl_pair"): "pair make_pair",
+    ("variant",): "variant",
+    ("vector", "bits/stl_vector"): "vector",
+}
+"""The headers that define names of `std`, the public one first; a `bits/` one is libstdc++'s own that does."""
 
 DEFINED_IN: dict[str, tuple[str, ...]] = {
-    **{f"std::{name}": ("cstdint",) for name in _INTEGERS},
-    **{name: ("cstdint", "stdint.h", f"bits/stdint-{'uintn' if name[0] == 'u' else 'intn'}") for name in _INTEGERS},
-    **{f"std::{name}": ("algorithm", "bits/stl_algo") for name in _STL_ALGORITHMS},
-    "std::function": ("functional", "bits/std_function"),
-    "std::bind": ("functional",),
-    "std::mem_fn": ("functional",),
-    "std::ref": ("functional", "bits/refwrap"),
-    "std::cref": ("functional", "bits/refwrap"),
-    "std::placeholders::_1": ("functional",),
-    "std::placeholders::_2": ("functional",),
-    "std::placeholders::_3": ("functional",),
-    "std::numeric_limits": ("limits",),
-    "std::unique_ptr": ("memory", "bits/unique_ptr"),
-    "std::make_unique": ("memory", "bits/unique_ptr"),
-    "std::shared_ptr": ("memory", "bits/shared_ptr"),
-    "std::weak_ptr": ("memory", "bits/shared_ptr"),
-    "std::make_shared": ("memory", "bits/shared_ptr"),
-    "std::pair": ("utility", "bits/stl_pair"),
-    "std::make_pair": ("utility", "bits/stl_pair"),
-    "std::exchange": ("utility",),
-    "std::thread": ("thread", "bits/std_thread"),
-    "std::this_thread::sleep_for": ("thread", "bits/this_thread_sleep"),
-    "std::this_thread::sleep_until": ("thread", "bits/this_thread_sleep"),
-    "std::mutex": ("mutex", "bits/std_mutex"),
-    "std::lock_guard": ("mutex", "bits/std_mutex"),
-    "std::unique_lock": ("mutex", "bits/unique_lock"),
-    "std::recursive_mutex": ("mutex",),
-    "std::call_once": ("mutex",),
-    "std::once_flag": ("mutex",),
-    "std::condition_variable": ("condition_variable",),
-    "std::atomic": ("atomic",),
-    "std::array": ("array",),
-    "std::optional": ("optional",),
-    "std::nullopt": ("optional",),
-    "std::variant": ("variant",),
-    "std::any": ("any",),
-    "std::string_view": ("string_view",),
-    "std::runtime_error": ("stdexcept",),
-    "std::logic_error": ("stdexcept",),
-    "std::invalid_argument": ("stdexcept",),
-    "std::out_of_range": ("stdexcept",),
-    "std::length_error": ("stdexcept",),
-    "std::domain_error": ("stdexcept",),
-    "std::vector": ("vector", "bits/stl_vector"),
-    "std::map": ("map", "bits/stl_map"),
-    "std::set": ("set", "bits/stl_set"),
-    "std::list": ("list", "bits/stl_list"),
-    "std::deque": ("deque", "bits/stl_deque"),
-    "std::unordered_map": ("unordered_map",),
-    "std::unordered_set": ("unordered_set",),
-    "std::regex": ("regex",),
-    "std::smatch": ("regex",),
-    "std::stringstream": ("sstream",),
-    "std::ostringstream": ("sstream",),
-    "std::istringstream": ("sstream",),
-    "std::ifstream": ("fstream",),
-    "std::ofstream": ("fstream",),
-    "std::cout": ("iostream",),
-    "std::cerr": ("iostream",),
-    "std::setprecision": ("iomanip",),
-    "std::setw": ("iomanip",),
-    "std::setfill": ("iomanip",),
-    "std::accumulate": ("numeric",),
-    "std::iota": ("numeric",),
-    "std::inner_product": ("numeric",),
-    "std::future": ("future",),
-    "std::promise": ("future",),
-    "std::async": ("future",),
-    "std::ostream_iterator": ("iterator",),
-    "std::istream_iterator": ("iterator",),
-    "std::stack": ("stack",),
-    "std::queue": ("queue",),
-    "std::priority_queue": ("queue",),
-    "std::bitset": ("bitset",),
-    "std::complex": ("complex",),
-    "std::tuple": ("tuple",),
-    "std::make_tuple": ("tuple",),
-    "std::system_error": ("system_error",),
-    "std::shared_mutex": ("shared_mutex",),
-    "std::shared_lock": ("shared_mutex",),
-    "std::min": ("algorithm", "bits/stl_algobase"),
-    "std::max": ("algorithm", "bits/stl_algobase"),
-    "std::fill": ("algorithm", "bits/stl_algobase"),
-    "std::copy": ("algorithm", "bits/stl_algobase"),
-    "std::lower_bound": ("algorithm", "bits/stl_algobase"),
+    **{f"std::{name}": headers for headers, names in _DEFINED.items() for name in names.split()},
     **{
-        f"std::{name}": ("cmath", "math.h")
-        for name in ("isnan", "isinf", "isfinite", "sqrt", "hypot", "fabs", "atan2", "round")
+        name: ("cstdint", "stdint.h", f"bits/stdint-{'uintn' if name[0] == 'u' else 'intn'}")
+        for name in _DEFINED["cstdint",].split()
     },
     **dict.fromkeys(("FLT_MAX", "FLT_MIN", "FLT_EPSILON", "DBL_MAX", "DBL_MIN", "DBL_EPSILON"), ("cfloat", "float.h")),
     **dict.fromkeys(("INT_MAX", "INT_MIN", "UINT_MAX", "LONG_MAX"), ("climits", "limits.h")),
@@ -128,7 +86,7 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
         for bits in (8, 16, 32, 64)
     },
 }
-"""Name to the headers that define it, the public one first; a `bits/` one is libstdc++'s own that does."""
+"""Every name to the headers that define it, likewise."""
 
 HEADER_SINCE: dict[str, int] = {
     **dict.fromkeys(
@@ -260,27 +218,18 @@ def oldest() -> int:
     return min(map(int, names().gcc))
 
 
-_C = {
-    "cstdint": ("stdint.h",),
-    "cfloat": ("float.h",),
-    "climits": ("limits.h",),
-    "cmath": ("math.h",),
-    "cstdlib": ("stdlib.h",),
-    "cstring": ("string.h",),
-    "cstdio": ("stdio.h",),
-    "cassert": ("assert.h",),
-    "cerrno": ("errno.h",),
-    "cinttypes": ("inttypes.h",),
-    "csignal": ("signal.h",),
-    "cstdarg": ("stdarg.h",),
-}
+# Headers of C that are told of: `cmath` is `math.h` as well.
+_C = frozenset(
+    ("cstdint", "cfloat", "climits", "cmath", "cstdlib", "cstring", "cstdio", "cassert", "cerrno", "cinttypes",
+     "csignal", "cstdarg")
+)  # fmt: skip
 
 
 @cache
 def offering() -> dict[str, tuple[str, ...]]:
     """Names of the standard libraries to the headers that offer them, the one to include first."""
     told = {
-        name: (header, *(_C.get(header, ()) if not name.startswith("std::") else ()))
+        name: (header, f"{header[1:]}.h") if header in _C and not name.startswith("std::") else (header,)
         for name, header in names().names.items()
     }
     return {**DEFINED_IN, **told}
@@ -296,7 +245,6 @@ def bit_of(name: str) -> int:
     return _places().get(name, 0)
 
 
-@cache
 @cache
 def named_by(header: str, gcc: int, standard: int) -> int | None:
     """The names that a header brings alone, as bits; None for a header that is not told of.

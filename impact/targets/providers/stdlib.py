@@ -4,8 +4,6 @@ Source: the lists of modules in the library references of Python 2.7 and 3.4 to 
 additions and removals (PEP 594, PEP 632 and others).
 """
 
-from __future__ import annotations
-
 
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())

@@ -1,7 +1,5 @@
 """How code asks which version of a package or library it is compiled with: the macros of data/version_macros.json."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What a version of a package offers to CMake and at run time, and what changed of it."""
 
-from __future__ import annotations
-
 import posixpath
 from collections.abc import Callable, Iterable, Iterator
 

@@ -5,8 +5,6 @@ Surfaces tell what each version offers; most of that never changes. Here is only
 little. The line of versions is one for each ROS generation, since nothing is gone from ROS 2 that only ROS 1 ever had.
 """
 
-from __future__ import annotations
-
 import msgspec
 import zstandard
 

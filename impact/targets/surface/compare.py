@@ -1,7 +1,5 @@
 """What changed between two versions of a package, of every kind and in one form."""
 
-from __future__ import annotations
-
 import posixpath
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -10,6 +8,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ....edges.memory import cached_method
 from ...facts.interface import PRIMITIVES, Field, Section, full_name
 from ...facts.parameters import mentions
 from ...facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
@@ -35,8 +34,6 @@ class RepositorySurfaces:
 
     def __init__(self, surfaces: Mapping[str, Surface]):
         self.surfaces = surfaces
-        self._python: dict[str, SurfaceNames] = {}
-        self._mentioned: dict[str, frozenset[str] | None] = {}
 
     @cached_property
     def cpp(self) -> dict[str, list[EntityPlace]]:
@@ -71,29 +68,26 @@ class RepositorySurfaces:
                 found[path] = (surface.package, header)
         return found
 
+    @cached_method
     def mentioned(self, package: str) -> frozenset[str] | None:
         """The names that the sources of a package mention, and those of the packages of this state that come along
         with it; None where they are not known."""
-        if package not in self._mentioned:
-            found: set[str] | None = set()
-            seen: set[str] = set()
-            todo = [package]
-            while todo and found is not None:
-                surface = self.surfaces.get(name := todo.pop())
-                if surface is None or name in seen:
-                    continue
-                seen.add(name)
-                todo += surface.runs_with
-                found = None if surface.mentioned is None else found.union(surface.mentioned)
-            self._mentioned[package] = None if found is None else frozenset(found)
-        return self._mentioned[package]
+        found: set[str] | None = set()
+        seen: set[str] = set()
+        todo = [package]
+        while todo and found is not None:
+            surface = self.surfaces.get(name := todo.pop())
+            if surface is None or name in seen:
+                continue
+            seen.add(name)
+            todo += surface.runs_with
+            found = None if surface.mentioned is None else found.union(surface.mentioned)
+        return None if found is None else frozenset(found)
 
+    @cached_method
     def python(self, package: str) -> SurfaceNames:
         """The Python names of a package."""
-        known = self._python.get(package)
-        if known is None:
-            known = self._python[package] = SurfaceNames(self.surfaces[package].python)
-        return known
+        return SurfaceNames(self.surfaces[package].python)
 
     def includes(self, header: str) -> set[str]:
         """Headers of this state that a header includes, itself among them, over any number of steps."""

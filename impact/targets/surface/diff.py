@@ -1,7 +1,5 @@
 """What changed in the C++ headers of a package between two versions: pure functions over what both offer."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import SequenceMatcher

@@ -10,8 +10,6 @@ ROS generation:
                                             `@` the states (none told: whenever the interface is there), `>` successor
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Iterable
@@ -21,6 +19,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ....edges.memory import cached_method
 from ..snapshot import DATA, SnapshotError
 from ..version import at_least, parts
 
@@ -81,8 +80,6 @@ class FieldsHistory:
             sections = []
             self._lines[name] = _spans(spans, len(self.starts)), sections
         self._definitions: dict[str, Definition] = {}
-        self._states: dict[str, int | None] = {}
-        self._lacking: dict[tuple[str, tuple[str, ...]], frozenset[str]] = {}
 
     def state(self, version: str) -> int | None:
         """The state that holds for a version; None before the first that was read."""
@@ -133,27 +130,23 @@ class FieldsHistory:
             known = self._definitions[interface] = Definition(spans, sections)
         return known
 
+    @cached_method
     def lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
         """The members of an interface that one of these versions lacks in some section while it has the interface."""
-        key = interface, versions
-        found = self._lacking.get(key)
-        if found is None:
-            definition = self.definition(interface)
-            states = {state for version in versions if (state := self._state_of(version)) is not None}
-            found = self._lacking[key] = frozenset(
-                name
-                for state in states
-                if definition is not None and there(definition.spans, state)
-                for members in definition.sections.values()
-                for name, rows in members.items()
-                if not any(there(row.spans, state) for row in rows)
-            )
-        return found
+        definition = self.definition(interface)
+        states = {state for version in versions if (state := self._state_of(version)) is not None}
+        return frozenset(
+            name
+            for state in states
+            if definition is not None and there(definition.spans, state)
+            for members in definition.sections.values()
+            for name, rows in members.items()
+            if not any(there(row.spans, state) for row in rows)
+        )
 
+    @cached_method
     def _state_of(self, version: str) -> int | None:
-        if version not in self._states:
-            self._states[version] = self.state(version)
-        return self._states[version]
+        return self.state(version)
 
     @cached_property
     def by_header(self) -> dict[str, str]:
@@ -209,7 +202,6 @@ class Fields:
 
     def __init__(self, path: Path):
         self._path = path
-        self._histories: dict[tuple[str, int], FieldsHistory | None] = {}
 
     @cached_property
     def _packed(self) -> bytes:
@@ -236,13 +228,11 @@ class Fields:
         """Every package of every generation, as `package generation`."""
         return list(self._texts)
 
+    @cached_method
     def history(self, package: str, ros: int) -> FieldsHistory | None:
         """A package's versions; None when it was not read."""
-        key = (package, ros)
-        if key not in self._histories:
-            text = self._texts.get(f"{package} {ros}")
-            self._histories[key] = FieldsHistory(text) if text else None
-        return self._histories[key]
+        text = self._texts.get(f"{package} {ros}")
+        return FieldsHistory(text) if text else None
 
 
 @cache

@@ -1,8 +1,6 @@
 """What the headers of each stored version of a package include, packed by itself, so that following includes through
 many packages reads little."""
 
-from __future__ import annotations
-
 import posixpath
 from collections.abc import Iterator, Sequence
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from ....edges.memory import cached_method
 from ...facts.surface import declared
 from .changes import ChangeEvent, ComparedThing, Form, Line
 
@@ -61,7 +62,6 @@ class Offers:
     def __init__(self, target: Target, surfaces: Surfaces | None = None):
         self.target = target
         self._given = surfaces
-        self._packages: dict[str, PackageOffer | None] = {}
 
     @cached_property
     def surfaces(self) -> Surfaces:
@@ -70,11 +70,13 @@ class Offers:
 
         return self._given or shipped()
 
+    @cached_method
     def package(self, name: str) -> PackageOffer | None:
         """What a package offers there; None when it is not there, or nothing comparable is stored."""
-        if name not in self._packages:
-            self._packages[name] = self._offer(name)
-        return self._packages[name]
+        version = self.target.version(name)
+        line = self.surfaces.line(name, self.target.ros) if version else None
+        place = line.place(version) if line is not None and version else None
+        return None if line is None or place is None or not version else PackageOffer(self, name, version, line, place)
 
     def history(self, package: str) -> SurfaceHistory | None:
         """All stored versions of a package that the target's ROS generation has; None when there is none."""
@@ -121,12 +123,6 @@ class Offers:
         # Where generators install to stands in none of the package's own files.
         return header.installed != f"include/{path}" if header.source else not self.has_one_include_folder
 
-    def _offer(self, name: str) -> PackageOffer | None:
-        version = self.target.version(name)
-        line = self.surfaces.line(name, self.target.ros) if version else None
-        place = line.place(version) if line is not None and version else None
-        return None if line is None or place is None or not version else PackageOffer(self, name, version, line, place)
-
     def find(self, side: str, name: str, packages: Iterable[str]) -> Offered | None:
         """The first of these packages' names that is so called and not as everywhere; or what it stands in: a member
         of a class that is gone as a whole is told by its class."""
@@ -154,15 +150,12 @@ class PackageOffer:
         self.line, self.place = line, place
         self.stored = line.versions[place]
         self.exact = self.stored == version
-        self._known: dict[tuple[str, str], Offered | None] = {}
 
+    @cached_method
     def get(self, side: str, name: str) -> Offered | None:
         """A name that only some versions have, or have in the same form; None for one that all do, or that none has."""
-        key = side, name
-        if key not in self._known:
-            events = self.line.events.get(side, {}).get(name)
-            self._known[key] = self._offered(side, name, events) if events else None
-        return self._known[key]
+        events = self.line.events.get(side, {}).get(name)
+        return self._offered(side, name, events) if events else None
 
     @cached_property
     def build(self) -> BuildSurface:

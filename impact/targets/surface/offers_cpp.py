@@ -153,9 +153,6 @@ def _is_alias(offers: Offers, package: str, name: str) -> bool:
     return any("kind" in told.aspects or told.what == "alias" for event in events for told in event.told)
 
 
-# -- calls -------------------------------------------------------------------------------------------------------------
-
-
 def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
     here = callable_forms(offered.here)
     if not here:
@@ -301,9 +298,6 @@ def _is_told(one: Entity, arguments: int) -> bool:
         or re.search(rf"\b{re.escape(parameter.name)}\b", given)
         for parameter in one.template or ()
     )  # fmt: skip
-
-
-# -- overrides ---------------------------------------------------------------------------------------------------------
 
 
 def _override(offered: Offered, given: tuple[str, ...]) -> Availability | None:

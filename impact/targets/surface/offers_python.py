@@ -4,13 +4,12 @@ Told by the stored surfaces themselves, since a name can be reached by several p
 classes; what only some versions have or take is reported, so that nothing rests on one reading alone.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
+from ....edges.memory import cached_method
 from ...facts.python.surface import PythonParameter, parameters_of
 from ...facts.python.uses import CallArguments, PythonUse
 from ..evidence_record import Evidence
@@ -24,7 +23,6 @@ class PythonOffers:
 
     def __init__(self, offers: Offers):
         self._offers = offers
-        self._names: dict[tuple[str, str], SurfaceNames | None] = {}
         self._answers: dict[tuple, Availability | None] = {}
         # By package and the last part of a name, the places in the line of versions around its changes.
         self._places: dict[str, dict[str, set[int]]] = {}
@@ -40,14 +38,12 @@ class PythonOffers:
             self._answers[key] = found[0] if found and None not in found else None
         return self._answers[key]
 
+    @cached_method
     def names(self, package: str, version: str) -> SurfaceNames | None:
         """The Python names of a stored version; None where it has no Python."""
-        key = package, version
-        if key not in self._names:
-            history = self._offers.history(package)
-            python = history.python(version) if history is not None else None
-            self._names[key] = SurfaceNames(python) if python is not None and python.modules else None
-        return self._names[key]
+        history = self._offers.history(package)
+        python = history.python(version) if history is not None else None
+        return SurfaceNames(python) if python is not None and python.modules else None
 
     def _asked(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         if use.how == "from":
@@ -104,8 +100,6 @@ class PythonOffers:
             evidence = evidence._replace(old=evidence.new, new=evidence.old)
         return Availability(Symbol("python", name, (offer.package,)), state, offer.package, offer.version, first,
                             evidence=evidence if form != "never" else None, **more)  # fmt: skip
-
-    # Names
 
     def _missing(self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames) -> Availability | None:
         if use.how == "override":
@@ -179,8 +173,6 @@ class PythonOffers:
             if known is not None and known.state in ("removed", "moved"):
                 return known.instead
         return ""
-
-    # Calls
 
     def _refused(
         self, offer: PackageOffer, use: PythonUse, place: int, names: SurfaceNames, entry: PythonName

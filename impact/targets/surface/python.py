@@ -1,7 +1,5 @@
 """What a version of a package offers to Python: names, with re-exports followed, and what changed of them."""
 
-from __future__ import annotations
-
 import builtins
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -20,6 +20,7 @@ import msgspec
 import zstandard
 
 from ....edges.console import UserError
+from ....edges.memory import cached_method
 from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ModuleSurface, Taken
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
@@ -83,7 +84,6 @@ class SurfaceHistory:
         self._rows: dict[str, list[tuple[str, msgspec.Raw, list[int]]]] = {}
         for kind, scope, value, spans in rows:
             self._rows.setdefault(kind, []).append((scope, value, spans))
-        self._inline_of: dict[str, tuple[str, ...]] = {}
 
     def surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
@@ -211,13 +211,11 @@ class SurfaceHistory:
                 found.setdefault(last, []).append(row)
         return found
 
+    @cached_method
     def _inline(self, version: str) -> tuple[str, ...]:
         """The inline namespaces of a version."""
-        known = self._inline_of.get(version)
-        if known is None:
-            spaces = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
-            known = self._inline_of[version] = tuple(dict.fromkeys(spaces))
-        return known
+        spaces = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
+        return tuple(dict.fromkeys(spaces))
 
     def _headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
         entities = self._inside("entity", version, Entity)
@@ -324,12 +322,6 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
         yield from range(spans[at], spans[at + 1] + 1)
     if not spans:
         yield from range(count)
-
-
-# -- packing -----------------------------------------------------------------------------------------------------------
-
-
-# -- the file ----------------------------------------------------------------------------------------------------------
 
 
 class Surfaces:

@@ -1,0 +1,39 @@
+"""Methods whose answers are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from types import MethodType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+Method = TypeVar("Method", bound=Callable[..., Any])
+
+
+class Kept:
+    """The descriptor that cached_method() makes of a method."""
+
+    def __init__(self, method: Callable[..., Any]):
+        self.__func__ = method
+        self.__doc__ = method.__doc__
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, instance: object | None, owner: type | None = None) -> Any:
+        if instance is None:
+            return self
+        # From here on the object has it as an attribute of its own, which is found first.
+        kept = instance.__dict__[self._name] = cache(MethodType(self.__func__, instance))
+        return kept
+
+
+if TYPE_CHECKING:
+
+    def cached_method(method: Method) -> Method:
+        """Runs a method once for the same arguments of one object, as functools.cached_property does for none.
+
+        The arguments have to be hashable. The answers live as long as the object, which cannot be pickled with them."""
+        return method
+else:
+    cached_method = Kept
