@@ -63,10 +63,9 @@ class CommandLine:
     def _copies(self) -> dict[int, list[FlowCall]]:
         """Calls that put a copy of argv into their third argument, by the id() of the function they stand in."""
         found: dict[int, list[FlowCall]] = {}
-        for fn in self.code.functions:
-            for call in fn.facts.calls:
-                if len(call.arguments) == 3 and tail(call.callee) in _COPIES:
-                    found.setdefault(id(fn), []).append(call)
+        for fn, call in self.code.calls_named(_COPIES):
+            if len(call.arguments) == 3:
+                found.setdefault(id(fn), []).append(call)
         return found
 
     def places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:

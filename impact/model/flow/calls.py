@@ -43,8 +43,11 @@ class Calls:
     def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
+        described: dict[int, list[FlowCall]] = {}
+        for fn, call in self.code.calls_named(self.table.calls):
+            described.setdefault(id(fn), []).append(call)
         for fn in self.code.functions:
-            for call in fn.facts.calls:
+            for call in described.get(id(fn), ()):
                 use = self.use_of(fn, call)
                 if use is not None:
                     found.append(use)
@@ -232,7 +235,7 @@ class Calls:
                 yield rows, call
         for each in fn.facts.assignments:
             value = each.value
-            base = code.base_made(fn, each)
+            base = code.base_made(fn, each) if each.target.startswith("this.") else None
             if base is not None:
                 if rows := self._rows(base[0], fn):
                     yield rows, FlowCall(base[0], base[1], each.line, 0, each.guard)
@@ -246,11 +249,11 @@ class Calls:
                     yield rows, FlowCall(make.text, make.parts, each.line, 0, each.guard, types, each.target)
             if value.kind == "make" and value.text:
                 continue
-            if value.kind in ("list", "make") or each.target.startswith("this."):
+            whole = value.kind in ("list", "make")
+            if whole or (value.kind in ("name", "text", "call") and each.target.startswith("this.")):
                 kind = self._initialised(fn, each.target)
-                rows = self._rows(kind.name, fn)
-                if rows and value.kind in ("list", "make", "name", "text", "call"):
-                    arguments = value.parts if value.kind in ("list", "make") else (value,)
+                if rows := self._rows(kind.name, fn):
+                    arguments = value.parts if whole else (value,)
                     types = ", ".join(kind.arguments)
                     yield rows, FlowCall(kind.name, arguments, each.line, 0, each.guard, types, each.target)
 

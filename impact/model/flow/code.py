@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property, lru_cache
+from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
 from ...facts.flow import (
@@ -19,7 +21,7 @@ from ...facts.flow import (
 )
 from .types import UNKNOWN, FlowType, parsed
 
-_Row = TypeVar("_Row")
+_Row = TypeVar("_Row", bound=tuple)
 
 
 class CodeFile(NamedTuple):
@@ -54,16 +56,21 @@ class Fn:
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
-        self.locals = {p.name for p in facts.parameters}
+        declared = {p.name for p in facts.parameters}
         python = source.facts.language == "python"
+        assigned = self.assigned
         for each in facts.assignments:
             target = each.target
-            self.assigned.setdefault(target, []).append(each)
+            if target in assigned:
+                assigned[target].append(each)
+            else:
+                assigned[target] = [each]
             if (each.type or (python and each.operator == "=")) and "." not in target:
-                self.locals.add(target)
+                declared.add(target)
         # What a module of Python assigns is everybody's in it.
         if python:
-            self.locals = self.locals.difference(facts.outside) if facts.name else set()
+            declared = declared.difference(facts.outside) if facts.name else set()
+        self.locals = declared
 
     def forget(self) -> None:
         """Drops what rests on the bodies of other functions."""
@@ -75,14 +82,11 @@ class Fn:
 
 
 class Cls(NamedTuple):
-    """A class with the file it stands in."""
+    """A class with the file it stands in. name: as its facts have it."""
 
     source: CodeFile
     facts: FlowClass
-
-    @property
-    def name(self) -> str:
-        return self.facts.name
+    name: str
 
 
 class Variable(NamedTuple):
@@ -103,13 +107,23 @@ def _names_of(source: CodeFile) -> tuple[object, ...]:
 class _About(Generic[_Row]):
     """Rows by the variable that they are about. Which one that is, is asked only of rows that name it by its name.
 
-    rows: the path, the function it stands in, and the row itself."""
+    rows: the path, and the row itself, which begins with the function that it stands in."""
 
-    def __init__(self, rows: Iterable[tuple[str, Fn, _Row]]):
-        self._named: dict[str, list[tuple[str, Fn, _Row]]] = {}
-        for row in rows:
-            pieces = _pieces(row[0])
-            self._named.setdefault(pieces[-1] if pieces else row[0], []).append(row)
+    def __init__(self, rows: Iterable[tuple[str, _Row]]):
+        self._rows: list[_Row] = []
+        # Places of rows by their path, and paths by their last part.
+        self._places: dict[str, list[int]] = {}
+        self._paths: dict[str, list[str]] = {}
+        places = self._places
+        for place, (path, row) in enumerate(rows):
+            self._rows.append(row)
+            if path in places:
+                places[path].append(place)
+            else:
+                places[path] = [place]
+        for path in places:
+            pieces = _pieces(path)
+            self._paths.setdefault(pieces[-1] if pieces else path, []).append(path)
         self._found: dict[str, dict[Variable, list[_Row]]] = {}
 
     def of(self, variable: Variable, meaning: Callable[[str, Fn], Variable]) -> Sequence[_Row]:
@@ -117,9 +131,14 @@ class _About(Generic[_Row]):
         known = self._found.get(variable.name)
         if known is None:
             known = self._found[variable.name] = {}
-            for path, fn, row in self._named.get(variable.name, ()):
-                known.setdefault(meaning(path, fn), []).append(row)
+            for path, row in self.named(variable.name):
+                known.setdefault(meaning(path, row[0]), []).append(row)
         return known.get(variable, ())
+
+    def named(self, name: str) -> Iterator[tuple[str, _Row]]:
+        """The rows whose path ends in a name, in order, with their path."""
+        found = ((place, path) for path in self._paths.get(name, ()) for place in self._places[path])
+        yield from ((path, self._rows[place]) for place, path in sorted(found))
 
 
 @lru_cache(maxsize=100_000)
@@ -140,6 +159,7 @@ def is_number(text: str) -> bool:
     return len(text) < 19 and text.isdecimal()
 
 
+@lru_cache(maxsize=100_000)
 def tail(name: str) -> str:
     """The last part of a path or qualified name."""
     return parts_of(name)[-1] if name else ""
@@ -187,7 +207,7 @@ class FlowCode:
                     if alias.scope:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
             for cls in source.facts.classes:
-                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
+                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls, cls.name))
             if before is not None and before.sources[place].facts is source.facts:
                 functions = before.functions_in[source.path]
                 for fn in functions:
@@ -209,6 +229,7 @@ class FlowCode:
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
         self._functions_of: dict[int, list[Fn]] = {}
+        self._names_in: dict[str, Set[str]] = {}
         self._members: dict[int, frozenset[str]] = {}
         self._member_types: dict[tuple[str, str], tuple[str, CodeFile, str] | None] = {}
 
@@ -522,6 +543,13 @@ class FlowCode:
         """All functions whose owner is a class of this name, lambdas in them included."""
         return self._by_owner.get(tail(name), [])
 
+    def _names_in_class(self, name: str) -> Set[str]:
+        """The last parts of the names of all functions whose owner is a class of this name."""
+        known = self._names_in.get(name)
+        if known is None:
+            known = self._names_in[name] = {tail(fn.name) for fn in self.functions_of_class(name)}
+        return known
+
     def functions_of(self, cls: Cls) -> list[Fn]:
         """The functions of one class, lambdas in them included."""
         known = self._functions_of.get(id(cls.facts))
@@ -563,20 +591,18 @@ class FlowCode:
 
     @cached_property
     def _writes(self) -> _About[tuple[Fn, Assignment]]:
-        return _About((e.target, fn, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
+        return _About((e.target, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
 
     @cached_property
     def _results(self) -> _About[tuple[Fn, FlowCall]]:
-        return _About((c.target, fn, (fn, c)) for fn in self.functions for c in fn.facts.calls if c.target)
+        return _About((c.target, (fn, c)) for fn in self.functions for c in fn.facts.calls if c.target)
 
     @cached_property
     def _passed(self) -> _About[tuple[Fn, FlowCall, int]]:
         return _About(
-            (argument.text, fn, (fn, call, place))
-            for fn in self.functions
+            (argument.text, (fn, call, place))
+            for fn, call in self.calls_named(self.by_tail)
             if fn.source.facts.language == "cpp"
-            for call in fn.facts.calls
-            if tail(call.callee) in self.by_tail
             for place, argument in enumerate(call.arguments)
             if argument.kind == "name"
         )
@@ -614,16 +640,35 @@ class FlowCode:
                 if member.name == variable.name
             ]
         elif variable.kind == "global":
-            beside = (s for s in self.sources if s.package == fn.source.package and s is not fn.source)
-            rows = next(
-                (found for source in (fn.source, *beside) if (found := _constants(source, tail(variable.name)))), []
-            )  # fmt: skip
+            rows = self.constants(variable.name, fn.source)
         else:
             return
         for member, source in rows:
-            holder = self._first_in.get(source.path, fn)
+            holder = self.first_in(source, fn)
             if member.value is not None:
                 yield member.value, holder
+
+    def constants(self, name: str, source: CodeFile) -> list[tuple[DataMember, CodeFile]]:
+        """The constants of a name, by its last part, that a file has; else those of the first file of its package that
+        has any."""
+        by_path = self._constants.get(tail(name), {})
+        beside = (path for path, rows in by_path.items() if rows[0][1].package == source.package)
+        path = source.path if source.path in by_path else next(beside, "")
+        return by_path.get(path, [])
+
+    @cached_property
+    def _constants(self) -> dict[str, dict[str, list[tuple[DataMember, CodeFile]]]]:
+        """By the last part of their names, and by file."""
+        found: dict[str, dict[str, list[tuple[DataMember, CodeFile]]]] = {}
+        for source in self.sources:
+            for constant in source.facts.constants:
+                by_path = found.setdefault(tail(constant.name), {})
+                by_path.setdefault(source.path, []).append((constant, source))
+        return found
+
+    def first_in(self, source: CodeFile, otherwise: Fn) -> Fn:
+        """The first function of a file; `otherwise` for a file without functions."""
+        return self._first_in.get(source.path, otherwise)
 
     def _member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
         for cls in self.classes.get(tail(owner), ()):
@@ -680,12 +725,42 @@ class FlowCode:
             return FlowType(meant)
         return UNKNOWN
 
+    def kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
+        """The calls whose result a variable keeps, and what is assigned to it, with the function they stand in; by the
+        types that everything shows, where writes() and results() go by those declared."""
+        for path, (fn, call) in self._results.named(variable.name):
+            if self.identity(path, fn) == variable:
+                yield fn, call
+        for path, (fn, each) in self._writes.named(variable.name):
+            if self.identity(path, fn) == variable:
+                yield fn, each.value
+
     # Calls
+
+    def calls_named(self, names: Iterable[str]) -> list[tuple[Fn, FlowCall]]:
+        """Calls of functions of some names, by the last part of the callee; in the order of the code."""
+        found = [row for name in names for row in self._calls.get(name, ())]
+        found.sort(key=itemgetter(0))
+        return [(fn, call) for _, fn, call in found]
+
+    @cached_property
+    def _calls(self) -> dict[str, list[tuple[int, Fn, FlowCall]]]:
+        """All calls by the last part of the callee, with their place among all."""
+        found: dict[str, list[tuple[int, Fn, FlowCall]]] = defaultdict(list)
+        place = 0
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                place += 1
+                found[tail(call.callee)].append((place, fn, call))
+        return found
 
     def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
         known = fn.targets.get(callee)
         if known is None:
+            last = tail(callee)
+            if last not in self.by_tail and last not in self.classes:
+                return []
             known = self._find_targets(callee, fn, depth)
             if depth == 0:
                 fn.targets[callee] = known
@@ -694,15 +769,13 @@ class FlowCode:
     def _find_targets(self, callee: str, fn: Fn, depth: int) -> list[Fn]:
         last = tail(callee)
         candidates = self.by_tail.get(last)
-        if not candidates and last not in self.classes:
-            return []
         head = callee.rpartition(".")[0] if "." in callee else ""
         if "." in callee:
             return self._called_methods(head, last, fn, depth)
         if "::" in callee:
             meant = self.meant(callee, fn.source, fn.scope)
             cls = self.class_of(around(meant), fn.source, fn.scope)
-            if cls is not None and last in {tail(f.name) for f in self.functions_of_class(cls.name)}:
+            if cls is not None and last in self._names_in_class(cls.name):
                 return self.method(cls, last)
             wanted = parts_of(meant)
             found = [f for f in candidates or () if not f.facts.owner and parts_of(f.name)[-len(wanted) :] == wanted]
@@ -787,8 +860,10 @@ class FlowCode:
         """Calls that reach a function of the code, by the function's id()."""
         found: dict[int, list[tuple[Fn, FlowCall]]] = {}
         for fn in self.functions:
+            known = fn.targets
             for call in fn.facts.calls:
-                for target in self.targets(call.callee, fn):
+                callee = call.callee
+                for target in known[callee] if callee in known else self.targets(callee, fn):
                     if target is not fn:
                         found.setdefault(id(target), []).append((fn, call))
         return found
@@ -897,10 +972,6 @@ def _module_of(path: str, module: Sequence[str]) -> bool:
         parts = parts[:-1]
     names = [name for name in module if name]
     return bool(names) and parts[-len(names) :] == names
-
-
-def _constants(source: CodeFile, name: str) -> list[tuple[DataMember, CodeFile]]:
-    return [(constant, source) for constant in source.facts.constants if tail(constant.name) == name]
 
 
 def _absolute(target: str, path: str) -> tuple[str, ...]:

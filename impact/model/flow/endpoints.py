@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from msgspec import structs
 
 from ...facts.cpp.names import split_at_commas
-from ...facts.flow import FlowExpr
+from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, around, is_number, parameter_of, tail
 from .defined import DefinedInterfaces
@@ -24,6 +24,7 @@ from .values import FlowValue, FlowValues, beside
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
+_CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {
     "publisher": "publisher",
@@ -80,6 +81,15 @@ class TimerSite(NamedTuple):
     use: FrameworkCall
     period: str
     callbacks: tuple[Fn, ...]
+
+
+def _feeds(kept: tuple[Fn, FlowCall | FlowExpr]) -> bool:
+    """Whether what a variable keeps is fed by what it is given: what is made, or what a call gives."""
+    given = kept[1]
+    if isinstance(given, FlowExpr):
+        return given.kind in ("make", "list", "call")
+    last = tail(given.callee)
+    return last not in _CONNECTS and (last != "registerCallback" or "." not in given.callee)
 
 
 def _words(value: FlowExpr) -> Iterator[str]:
@@ -518,47 +528,28 @@ class Sites:
     def joins(self) -> dict[Variable, list[Fn]]:
         """Filters to the callbacks that get what comes through them, synchronizers and caches in between."""
         code = self.code
-        feeds: dict[Variable, set[Variable]] = {}
         registered: dict[Variable, list[Fn]] = {}
-        for fn in code.functions:
-            for call in fn.facts.calls:
-                last = tail(call.callee)
-                receiver = call.callee.rpartition(".")[0] if "." in call.callee else ""
-                if last == "registerCallback" and receiver and call.arguments:
-                    for argument in call.arguments[:1]:
-                        registered.setdefault(code.identity(receiver, fn), []).extend(self.bodies(argument, fn))
-                elif (
-                    last
-                    in (
-                        "connectInput",
-                        "reset",
-                        "make_shared",
-                        "make_unique",
-                        "Synchronizer",
-                        "TimeSynchronizer",
-                        "ApproximateTimeSynchronizer",
-                        "Cache",
-                        "MessageFilter",
-                    )
-                    or call.target
-                ):
-                    target = receiver if last in ("connectInput", "reset") else call.target
-                    if target:
-                        fed = feeds.setdefault(code.identity(target, fn), set())
-                        fed.update(self._named(call.arguments, fn))
-            for each in fn.facts.assignments:
-                if each.target and each.value.kind in ("make", "list", "call"):
-                    feeds.setdefault(code.identity(each.target, fn), set()).update(self._named(each.value.parts, fn))
+        for fn, call in code.calls_named(("registerCallback",)):
+            receiver = call.callee.rpartition(".")[0]
+            if receiver and call.arguments:
+                registered.setdefault(code.identity(receiver, fn), []).extend(self.bodies(call.arguments[0], fn))
+        connected: dict[Variable, list[tuple[Fn, FlowCall]]] = {}
+        for fn, call in code.calls_named(_CONNECTS) if registered else ():
+            if "." in call.callee:
+                joint = code.identity(call.callee.rpartition(".")[0], fn)
+                connected.setdefault(joint, []).append((fn, call))
         found: dict[Variable, list[Fn]] = {}
         for joint, bodies in registered.items():
             queue, seen = [joint], {joint}
             while queue:
                 one = queue.pop()
                 found.setdefault(one, []).extend(bodies)
-                for fed in feeds.get(one, ()):
-                    if fed not in seen and len(seen) < 40:
-                        seen.add(fed)
-                        queue.append(fed)
+                for fn, given in (*connected.get(one, ()), *filter(_feeds, code.kept(one))):
+                    arguments = given.arguments if isinstance(given, FlowCall) else given.parts
+                    for fed in self._named(arguments, fn):
+                        if fed not in seen and len(seen) < 40:
+                            seen.add(fed)
+                            queue.append(fed)
         return found
 
     def _named(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
@@ -767,11 +758,10 @@ class Sites:
     @cached_property
     def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
         found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
-        for fn in self.code.functions:
-            for call in fn.facts.calls:
-                if tail(call.callee) == "reset" and "." in call.callee and call.arguments:
-                    variable = self.code.identity(call.callee.rpartition(".")[0], fn)
-                    found.setdefault(variable, []).append((fn, call.arguments[0]))
+        for fn, call in self.code.calls_named(("reset",)):
+            if "." in call.callee and call.arguments:
+                variable = self.code.identity(call.callee.rpartition(".")[0], fn)
+                found.setdefault(variable, []).append((fn, call.arguments[0]))
         return found
 
     def _made_handle(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int) -> str:
@@ -838,25 +828,22 @@ class Sites:
         for statement in direct:
             inside.setdefault(id(statement.use.fn), []).append(statement)
         names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
-        for fn in self.code.functions:
-            for call in fn.facts.calls:
-                if tail(call.callee) not in names:
-                    continue
-                for target in self.code.targets(call.callee, fn):
-                    inner = inside.get(id(target)) or [
-                        statement
-                        for further in target.facts.calls
-                        for last in self.code.targets(further.callee, target)
-                        for statement in inside.get(id(last), ())
-                    ]
-                    if inner:
-                        sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
-                        types = {statement.type for statement in inner}
-                        use = FrameworkCall(fn, inner[0].use.row, call)
-                        kind = types.pop() if len(types) == 1 else ""
-                        message = shown(call.arguments[0]) if call.arguments else ""
-                        yield Statement(use, sites, kind, message, "", target.name)
-                        break
+        for fn, call in self.code.calls_named(names):
+            for target in self.code.targets(call.callee, fn):
+                inner = inside.get(id(target)) or [
+                    statement
+                    for further in target.facts.calls
+                    for last in self.code.targets(further.callee, target)
+                    for statement in inside.get(id(last), ())
+                ]
+                if inner:
+                    sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
+                    types = {statement.type for statement in inner}
+                    use = FrameworkCall(fn, inner[0].use.row, call)
+                    kind = types.pop() if len(types) == 1 else ""
+                    message = shown(call.arguments[0]) if call.arguments else ""
+                    yield Statement(use, sites, kind, message, "", target.name)
+                    break
 
     def _statement(self, use: FrameworkCall) -> Statement | None:
         receiver = self.calls.receiver_of(use)

@@ -11,6 +11,10 @@ from .endpoints import Sites
 from .types import parsed
 
 
+# Kinds of arguments that may hand on a function.
+_HANDING = frozenset(("function", "name", "bind"))
+
+
 class StartableProgram(NamedTuple):
     """Something that can be started. kind, executable and plugin as in Node; roots: where it begins; files: those it is
     built from, headers left out."""
@@ -113,7 +117,8 @@ class CodeReach:
             for call in fn.facts.calls:
                 further.extend(code.targets(call.callee, fn))
                 for argument in call.arguments:
-                    further.extend(self._handed(argument, fn))
+                    if argument.kind in _HANDING:
+                        further.extend(self._handed(argument, fn))
             for name, _, _ in made_in(fn, code):
                 cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
                 if cls is not None:

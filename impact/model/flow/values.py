@@ -273,15 +273,12 @@ class FlowValues:
 
     def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
-        sources = [fn.source, *(s for s in self.code.sources if s.package == fn.source.package and s is not fn.source)]
-        for source in sources:
-            found = [constant for constant in source.facts.constants if tail(constant.name) == tail(name)]
-            for constant in found:
-                if constant.value is not None:
-                    holder = next((f for f in self.code.functions if f.source is source), fn)
-                    yield from self._of(constant.value, holder, constant.line, seen)
-            if found:
-                return
+        found = self.code.constants(name, fn.source)
+        for constant, source in found:
+            if constant.value is not None:
+                yield from self._of(constant.value, self.code.first_in(source, fn), constant.line, seen)
+        if found:
+            return
         if "::" in name or "." in name:
             cls, _, member = name.replace(".", "::").rpartition("::")
             found_class = self.code.class_of(cls, fn.source, fn.scope)
