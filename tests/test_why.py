@@ -89,7 +89,8 @@ PACKAGE = NameOffer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
             "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 14 places:\n"
             + "".join(f"  a.cpp:{n}\n" for n in range(1, 13))
             + "  and 2 more\n"
-            "safe: every package that uses it declares it, or something that brings it, and check reports nothing on it",
+            "safe: every package that uses it declares it, or something that brings it, "
+            "and check reports nothing on it",
         ),
         (
             [answer("header", PACKAGE, used=("a.cpp:1",), findings=("a.cpp:1: error: gone [removed-header]",))],
