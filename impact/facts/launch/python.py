@@ -228,7 +228,8 @@ class Walker:
             self.under(statement.body, ActionCondition("each", (other(over),), statement.lineno))
         else:
             for turn in turns:
-                if self.under(statement.body, *self.bind_turn(statement.target, turn)) and not _continues(statement.body):
+                extra = self.bind_turn(statement.target, turn)
+                if self.under(statement.body, *extra) and not _continues(statement.body):
                     break
         self.block(statement.orelse)
 
