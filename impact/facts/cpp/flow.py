@@ -94,7 +94,6 @@ class _File(CppStatements):
         self.namespaces: set[str] = set()
         self.misread = False
         self.outside = {"": self.state()}
-        self.conditions: tuple[tuple[str, int], ...] = ()
 
     def go_outside(self, owner: str) -> None:
         """Into the function that stands for what is outside of functions, of the file or of a class."""

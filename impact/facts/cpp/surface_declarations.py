@@ -349,7 +349,7 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator]
         elif token in ("=", ",", ":", "{"):
             break
         elif token == "operator":
-            return _operator(rest, place, units, head)
+            return _operator(rest, place, head)
         elif token in ASIDE and (behind := behind_aside(rest, place)) > place:
             builtin = builtin or token in DEDUCED
             place = behind
@@ -520,7 +520,7 @@ def _function(
     return Declarator(kind, name, type_, parameters, frozenset(traits))
 
 
-def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: Head) -> list[Declarator] | None:
+def _operator(rest: list[str], place: int, head: Head) -> list[Declarator] | None:
     """A function whose name begins with `operator`."""
     if place and rest[place - 1] == "::":
         return []
