@@ -97,15 +97,9 @@ class _Reader:
             both = [path for path in taken if any(path == name or path.endswith("/" + name) for name in named)]
             instead = both[0] if both else taken[0] if len(taken) == 1 else ""
         return HeaderSurface(
-            tuple(self.entities),
-            includes,
-            tuple(dict.fromkeys(self.inline)),
-            self.deprecated,
-            instead,
-            self.lost,
-            tuple(scanned.problems),
-            tuple(self.announced),
-        )
+            tuple(self.entities), includes, tuple(dict.fromkeys(self.inline)), self.deprecated, instead, self.lost,
+            tuple(scanned.problems), tuple(self.announced),
+        )  # fmt: skip
 
     def _walk(self) -> None:
         code = self.code

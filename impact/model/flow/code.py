@@ -212,6 +212,8 @@ class FlowCode:
         self._members: dict[int, frozenset[str]] = {}
         self._member_types: dict[tuple[str, str], tuple[str, CodeFile, str] | None] = {}
 
+    # Names
+
     def meant(self, name: str, source: CodeFile, scope: str = "") -> str:
         """A name with aliases of its file (and, in C++, its package's headers) resolved, at most five times over."""
         key = (name, source.path, scope)
@@ -441,6 +443,8 @@ class FlowCode:
         while fn is not None and seen < 10:
             yield fn
             fn, seen = self.enclosing(fn), seen + 1  # type: ignore[assignment]
+
+    # Variables
 
     def variable(self, path: str, fn: Fn) -> tuple[Variable, tuple[str, ...]]:
         """What the head of a path means in a function, and the parts that follow it."""
@@ -675,6 +679,8 @@ class FlowCode:
         if tail(meant)[:1].isupper():
             return FlowType(meant)
         return UNKNOWN
+
+    # Calls
 
     def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
