@@ -40,6 +40,15 @@ _ABSENT = frozenset((
 _PART = re.compile(
     r"(?:__)?(\w+?)_(?:VERSION_(MAJOR|MINOR|PATCH|REVISION|SUBMINOR)|(MAJOR|MINOR|PATCH|SUBMINOR)_VERSION)"
 )
+# Macros that are one number of a version each. Eigen 3.4.0 is world 3, major 4, minor 0.
+_NUMBERS = {
+    name: (library, place)
+    for library, names in (
+        ("gcc", ("__GNUC__", "__GNUC_MINOR__", "__GNUC_PATCHLEVEL__")),
+        ("eigen", ("EIGEN_WORLD_VERSION", "EIGEN_MAJOR_VERSION", "EIGEN_MINOR_VERSION")),
+    )
+    for place, name in enumerate(names)
+}
 # X_VERSION as one number: how much major, minor and patch weigh.
 _WEIGHTS = {
     **dict.fromkeys(("BOOST_VERSION", "PCL_VERSION"), (100000, 100, 1)),
@@ -255,17 +264,8 @@ def _macro(name: str, environment: Environment) -> int | None:
         return 0
     if name == "true":
         return 1
-    if name in ("__GNUC__", "__GNUC_MINOR__", "__GNUC_PATCHLEVEL__"):
-        known = numbers_of(version_of("gcc", environment) or "")
-        index = ("__GNUC__", "__GNUC_MINOR__", "__GNUC_PATCHLEVEL__").index(name)
-        return known[index] if index < len(known) else None
-    if name in _PRESENT:
+    if name in _PRESENT and name not in _NUMBERS:
         return None if name in ("__cplusplus", "__has_include") else 1
-    eigen = ("EIGEN_WORLD_VERSION", "EIGEN_MAJOR_VERSION", "EIGEN_MINOR_VERSION")
-    if name in eigen:
-        # Eigen 3.4.0 is world 3, major 4, minor 0.
-        known = numbers_of(version_of("eigen", environment) or "")
-        return known[eigen.index(name)] if eigen.index(name) < len(known) else None
     weights = _WEIGHTS.get(name)
     if weights is not None:
         prefix = "py" if name == "PY_VERSION_HEX" else name.partition("_VERSION")[0]
@@ -273,11 +273,13 @@ def _macro(name: str, environment: Environment) -> int | None:
         if len(known) < 2:
             return None
         return sum(weight * part for weight, part in zip(weights, (*known, 0, 0), strict=False))
-    part = _PART.fullmatch(name)
-    if part is None:
+    if name in _NUMBERS:
+        library, index = _NUMBERS[name]
+    elif (part := _PART.fullmatch(name)) is not None:
+        library, index = part[1], PARTS[part[2] or part[3]]
+    else:
         return None
-    known = numbers_of(version_of(part.group(1), environment) or "")
-    index = PARTS[part.group(2) or part.group(3)]
+    known = numbers_of(version_of(library, environment) or "")
     return known[index] if index < len(known) else None
 
 

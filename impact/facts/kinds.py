@@ -190,7 +190,7 @@ def extract(kind: str, data: bytes) -> FileFacts[Any]:
         kind = "flow_python"
     if len(data) > largest(kind):
         return FileFacts(kind, empty(kind, Problem(1, f"larger than {size_text(largest(kind))}")))
-    return FileFacts(kind, _facts(kind, data), allows(data))
+    return FileFacts(kind, _contained(kind, lambda: _extracted(kind, data)), allows(data))
 
 
 def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
@@ -202,10 +202,6 @@ def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
 def _extractor(kind: str) -> Callable[..., Any]:
     module = EXTRACTORS[kind][0]
     return getattr(import_module(f".{module}", __package__), kind if kind in SEARCHES else "extract")
-
-
-def _facts(kind: str, data: bytes) -> Any:
-    return _contained(kind, lambda: _extracted(kind, data))
 
 
 def _extracted(kind: str, data: bytes) -> Any:

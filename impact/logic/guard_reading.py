@@ -20,6 +20,7 @@ from .guard_terms import (
     negation,
     rebuilt,
     renamed,
+    split_outside,
     substituted,
 )
 
@@ -142,29 +143,9 @@ def _case_value(subject: Term, value: str) -> Term:
     return guard_cpp.comparison("==", subject, guard_cpp.expression(value))
 
 
+_QUOTED = r"\"(?:[^\"\\]|\\(?:.|\Z))*(?:\"|\Z)|'(?:[^'\\]|\\(?:.|\Z))*(?:'|\Z)"
+
+
 def _split(text: str, separator: str) -> list[str]:
     """The parts of a text between separators outside brackets and quotes."""
-    parts: list[str] = []
-    depth = start = position = 0
-    quote = ""
-    while position < len(text):
-        character = text[position]
-        if quote:
-            if character == "\\":
-                position += 1
-            elif character == quote:
-                quote = ""
-        elif character in "\"'":
-            quote = character
-        elif character in "([{":
-            depth += 1
-        elif character in ")]}":
-            depth -= 1
-        elif depth <= 0 and text.startswith(separator, position):
-            parts.append(text[start:position])
-            position += len(separator)
-            start = position
-            continue
-        position += 1
-    parts.append(text[start:])
-    return [part.strip() for part in parts if part.strip()]
+    return [part for part in split_outside(text, separator, _QUOTED) if part]

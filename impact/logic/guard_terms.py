@@ -203,3 +203,17 @@ def names_in(term: Term) -> Iterable[str]:
         yield term.text
     for part in term.parts:
         yield from names_in(part)
+
+
+def split_outside(text: str, mark: str, hidden: str = "(?!)") -> list[str]:
+    """The parts of a text between marks that stand in no brackets, blanks around them taken off. mark, hidden: regular
+    expressions; in what the second one matches nothing is looked for."""
+    parts: list[str] = []
+    depth = start = 0
+    for match in re.finditer(rf"(?s:{hidden})|(?P<bracket>[(\[{{}}\])])|(?P<mark>{mark})", text):
+        if match["bracket"]:
+            depth += 1 if match["bracket"] in "([{" else -1
+        elif match["mark"] and depth <= 0:
+            parts.append(text[start : match.start()].strip())
+            start = match.end()
+    return [*parts, text[start:].strip()]

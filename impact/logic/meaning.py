@@ -11,6 +11,7 @@ from ...edges.answers import answer_once
 from ..facts.flow import FlowExpr
 from ..model.flow.code import FlowCode, Fn
 from ..model.flow.graph import GuardAt
+from .guard_terms import split_outside
 
 _DEEPEST = 3
 _LONGEST = 1000
@@ -84,7 +85,7 @@ class Meaning:
         if rows[-1].guard != -1 or len(rows) > 4:
             return None
         value = self._written(rows[-1].value, targets[0], depth)
-        given = _split(arguments)
+        given = split_outside(arguments, ",") if arguments.strip() else []
         if value is None or len(given) != len(target.parameters):
             return None
         for parameter, argument in zip(target.parameters, given, strict=True):
@@ -142,40 +143,6 @@ def _closing(text: str, start: int) -> int:
     return 0
 
 
-def _split(text: str) -> list[str]:
-    """Arguments of a call, split at the commas between them."""
-    found: list[str] = []
-    depth = start = 0
-    for place, sign in enumerate(text):
-        if sign in "([{":
-            depth += 1
-        elif sign in ")]}":
-            depth -= 1
-        elif sign == "," and depth == 0:
-            found.append(text[start:place].strip())
-            start = place + 1
-    last = text[start:].strip()
-    return [*found, last] if last or found else []
-
-
 def conjuncts(text: str) -> list[str]:
     """What a condition asks for at once, split at its outermost `&&` or `and`; the whole where an `||` stands there."""
-    found: list[str] = []
-    depth = start = place = 0
-    while place < len(text):
-        sign = text[place]
-        if sign in "([{":
-            depth += 1
-        elif sign in ")]}":
-            depth -= 1
-        elif depth == 0:
-            if text.startswith(("||", " or "), place):
-                return [text]
-            width = 2 if text.startswith("&&", place) else 5 if text.startswith(" and ", place) else 0
-            if width:
-                found.append(text[start:place].strip())
-                place += width
-                start = place
-                continue
-        place += 1
-    return [*found, text[start:].strip()]
+    return [text] if len(split_outside(text, r"\|\|| or ")) > 1 else split_outside(text, "&&| and ")

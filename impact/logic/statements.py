@@ -4,7 +4,7 @@ publishers and its subscribers. Small enough to be kept for every commit of a re
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import msgspec
@@ -376,7 +376,7 @@ def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
             continue
         if file.kind == "cmake":
             folder = file.path.rpartition("/")[0]
-            for name, arguments in _commands(one, paths, folder):
+            for name, arguments in _commands(one):
                 if not arguments or "$" in arguments[0]:
                     continue
                 target, rest = arguments[0], arguments[1:]
@@ -407,7 +407,7 @@ def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
     return BuiltPackage(state.name, executables, libraries, components, scripts, links)
 
 
-def _commands(facts: Any, paths: Iterable[str], folder: str) -> Iterator[tuple[str, list[str]]]:
+def _commands(facts: Any) -> Iterator[tuple[str, list[str]]]:
     """The commands of a CMake file with their arguments, variables that hold plain words put in."""
     values: dict[str, list[str]] = {}
     for command in facts.commands:

@@ -22,16 +22,7 @@ from .paths import (
     shown,
     within,
 )
-from .repository import (
-    MODE_FOLDER,
-    MODE_LINK,
-    MODE_SUBMODULE,
-    RepositoryObjects,
-    merge_base,
-    name_of,
-    open_repository,
-    resolve,
-)
+from .repository import MODE_FOLDER, MODE_LINK, MODE_SUBMODULE, RepositoryObjects, merge_base, open_repository, resolve
 
 _FILE, _FOLDER = 1, 2
 _HOPS_AT_MOST = 40
@@ -40,6 +31,11 @@ _STEPS_AT_MOST = 5_000_000
 # At so many places the same folder may stand: a folder that holds ten of one that holds ten, and so on, is no end.
 _PLACES_AT_MOST = 2_000
 _REPOSITORY = "it leads out of the repository"
+
+
+def name_of(place: str, folder: str) -> str:
+    """What a folder of a repository is called, or the repository when it is its root."""
+    return posixpath.basename(folder or place.removesuffix("/.git")).removesuffix(".git")
 
 
 class GitTree(Walked):

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import errno
 import os
-import posixpath
 import stat
 import zlib
 from collections.abc import Iterator
@@ -342,8 +341,3 @@ class RepositoryObjects:
     def link(self, oid: Any) -> str:
         """What a link leads to."""
         return self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
-
-
-def name_of(place: str, folder: str) -> str:
-    """What a folder of a repository is called, or the repository when it is its root."""
-    return posixpath.basename(folder or place.removesuffix("/.git")).removesuffix(".git")

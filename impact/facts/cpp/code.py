@@ -26,8 +26,15 @@ _CLASSES = kinds("class_specifier", "struct_specifier", "union_specifier")
 _PREPROCESSOR = kinds("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
 _DEFINES = kinds("preproc_def", "preproc_function_def")
 _TRAIT_NODES = kinds("virtual_specifier", "type_qualifier", "storage_class_specifier") | {kind("virtual", False)}
-_BOOLEANS = kinds("true", "false")
-_STRINGS = kinds("string_literal", "raw_string_literal", "concatenated_string")
+# Expressions without parts: kind and text.
+_PLAIN = {
+    KIND.this: ("this", "this"),
+    KIND.lambda_expression: ("lambda", ""),
+    KIND.parameter_pack_expansion: ("pack", ""),
+    **dict.fromkeys(kinds("string_literal", "raw_string_literal", "concatenated_string"), ("literal", "text")),
+    **dict.fromkeys(kinds("true", "false"), ("literal", "bool")),
+    KIND.null: ("literal", "null"),
+}
 _TYPE_PARAMETERS = kinds(
     "type_parameter_declaration", "variadic_type_parameter_declaration", "optional_type_parameter_declaration",
     "template_template_parameter_declaration",
@@ -261,7 +268,7 @@ class CppCode:
             return CppUse(word, at, "initializer", written, self._place(path), call=call, template=template)
         if number == KIND.call_expression:
             return self._named(word, at, form, written, template, self._called(path, level), False, path, outer)
-        if self._is_declared(node, parent, path, level):
+        if self._is_declared(node, parent):
             return None
         made, call = self._made(node, parent, path, level)
         return self._named(word, at, form, written, template, call, made, path, outer)
@@ -282,7 +289,7 @@ class CppCode:
             return None
         return tuple(self._expression(each, path) for each in listed_in(node))
 
-    def _is_declared(self, node: Node, parent: Node, path: Sequence[Node], level: int) -> bool:
+    def _is_declared(self, node: Node, parent: Node) -> bool:
         """Whether a name stands where it is declared."""
         number = parent.kind_id
         if number in DECLARED_TYPES or number in _NAMED:
@@ -390,7 +397,7 @@ class CppCode:
                     if other == name and how not in ("opened", "used"):
                         found = offset, node, how
                 if found is not None:
-                    return self._declared_locally(name, *found, path[: level + 1], depth)
+                    return self._declared_locally(*found, path[: level + 1], depth)
             elif number in _CLASSES and any(node.kind_id == KIND.function_definition for node in path[level:]):
                 members = path[level].child_by_field_name("body")
                 if members is not None and self._is_member(members, name):
@@ -401,9 +408,7 @@ class CppCode:
         text = self._text[body.start_byte : body.end_byte]
         return re.search(rf"\b{re.escape(name)}\s*(?:[;={{,]|\[)", text) is not None
 
-    def _declared_locally(
-        self, name: str, offset: int, node: Node, how: str, path: Sequence[Node], depth: int
-    ) -> Local | None:
+    def _declared_locally(self, offset: int, node: Node, how: str, path: Sequence[Node], depth: int) -> Local | None:
         if how in ("template", "type"):
             return Local(how, "", None, offset)
         if how == "alias":
@@ -634,29 +639,18 @@ class CppCode:
             return Expr("call", "", at, tuple(self._expression(each, path, depth + 1) for each in parts))
         if number == KIND.parenthesized_expression and node.named_child_count:
             return self._expression(listed_in(node)[0], path, depth + 1) if listed_in(node) else Expr("other", "", at)
-        if number == KIND.pointer_expression:
+        if number in (KIND.pointer_expression, KIND.subscript_expression):
             inner = node.child_by_field_name("argument")
-            sign = self._text[at]
+            how, sign = ("unary", self._text[at]) if number == KIND.pointer_expression else ("index", "")
             if inner is not None:
-                return Expr("unary", sign, at, (self._expression(inner, path, depth + 1),))
-        if number == KIND.subscript_expression:
-            inner = node.child_by_field_name("argument")
-            if inner is not None:
-                return Expr("index", "", at, (self._expression(inner, path, depth + 1),))
-        if number == KIND.this:
-            return Expr("this", "this", at)
-        if number in _STRINGS:
-            return Expr("literal", "text", at)
+                return Expr(how, sign, at, (self._expression(inner, path, depth + 1),))
+        if number in _PLAIN:
+            how, text = _PLAIN[number]
+            return Expr(how, text, at)
         if number == KIND.number_literal:
             text = self._of(node)
             floating = text[:2] not in ("0x", "0X") and any(c in text for c in ".eE")
             return Expr("literal", "float" if floating else "integer", at)
-        if number in _BOOLEANS:
-            return Expr("literal", "bool", at)
-        if number == KIND.null:
-            return Expr("literal", "null", at)
-        if number == KIND.lambda_expression:
-            return Expr("lambda", "", at)
         if number in (KIND.new_expression, KIND.compound_literal_expression, KIND.cast_expression):
             type_ = node.child_by_field_name("type")
             given = node.child_by_field_name("arguments") or node.child_by_field_name("value")
@@ -680,7 +674,7 @@ class CppCode:
             both = (node.child_by_field_name("consequence"), node.child_by_field_name("alternative"))
             parts = tuple(self._expression(each, path, depth + 1) for each in both if each is not None)
             return Expr("conditional", "", at, parts)
-        return Expr("pack" if number == KIND.parameter_pack_expansion else "other", "", at)
+        return Expr("other", "", at)
 
 
 # Macros of gtest that open the body of a method of a class that is derived from what they are given first.

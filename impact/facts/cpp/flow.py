@@ -45,17 +45,11 @@ def extract(data: bytes) -> FlowFile:
     exports: tuple[str, ...] = ()
     if any(word in source.text for word in EXPORTING):
         exports = exports_of(scan(data).visible)
+    included = (match.group(1) for match in beginning_lines(INCLUDED, source.text))
     return FlowFile(
-        "cpp",
-        tuple(reader.aliases),
-        tuple(reader.classes),
-        tuple(reader.functions),
-        tuple(reader.constants),
-        exports,
-        tuple(sorted(wrong.union(source.hidden))),
-        tuple(reader.problems),
-        tuple(dict.fromkeys(match.group(1) for match in beginning_lines(INCLUDED, source.text))),
-    )
+        "cpp", tuple(reader.aliases), tuple(reader.classes), tuple(reader.functions), tuple(reader.constants), exports,
+        tuple(sorted(wrong.union(source.hidden))), tuple(reader.problems), tuple(dict.fromkeys(included)),
+    )  # fmt: skip
 
 
 def read(source: Cleaned, root: Node) -> _File:
@@ -94,7 +88,6 @@ class _File(CppStatements):
         self.namespaces: set[str] = set()
         self.misread = False
         self.outside = {"": self.state()}
-        self.conditions: tuple[tuple[str, int], ...] = ()
 
     def go_outside(self, owner: str) -> None:
         """Into the function that stands for what is outside of functions, of the file or of a class."""

@@ -1,10 +1,8 @@
-"""The kinds of nodes of the C++ grammar, by number, and the few names of functions that C++ code itself knows."""
+"""The kinds of nodes of the C++ grammar, by number, and what is asked of nodes of any kind."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
-from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -66,8 +64,6 @@ OPERATORS = {
         "or",
     )
 }  # fmt: skip
-JOINING = frozenset("+/%")
-SAFE = frozenset(("-", "*", "/", "%", "<", ">", "<=", ">=", "&&", "||", "&", "|", "^"))
 
 
 def grammatical(node: Node) -> list[Node]:
@@ -86,46 +82,3 @@ def listed_in(node: Node) -> list[Node]:
         if child.kind_id == KIND.comment:
             return [child for child in children if child.kind_id != KIND.comment]
     return children
-
-
-# Calls that are no news: what they are given counts, themselves they do not.
-_NOISE = re.compile(
-    r"(?:ROS|RCLCPP|RCUTILS|NODELET|RCLC)_(?:DEBUG|INFO|WARN|ERROR|FATAL|LOG|SAFE_FWRITE|ASSERT|BREAK)\w*"
-    r"|(?:EXPECT|ASSERT)_\w+|CONSOLE_BRIDGE_log\w+|assert"
-)
-
-
-@lru_cache(maxsize=4096)
-def noise(callee: str) -> bool:
-    """Whether a function only logs or checks."""
-    return _NOISE.fullmatch(callee) is not None
-
-
-# Functions that give what they are given.
-THROUGH = frozenset((
-    "std::move", "std::forward", "std::as_const", "std::ref", "std::cref", "boost::ref", "std::get",
-    "static_cast", "dynamic_cast", "const_cast", "reinterpret_cast",
-    "std::static_pointer_cast", "std::dynamic_pointer_cast", "std::const_pointer_cast",
-    "boost::static_pointer_cast", "boost::dynamic_pointer_cast", "boost::const_pointer_cast",
-))  # fmt: skip
-BINDS = frozenset(("std::bind", "boost::bind", "bind", "std::bind_front", "std::mem_fn", "boost::mem_fn"))
-MAKES = frozenset((
-    "std::make_shared", "std::make_unique", "boost::make_shared", "boost::make_unique", "make_shared", "make_unique",
-))  # fmt: skip
-NEVER_RETURNS = frozenset((
-    "exit", "_exit", "::exit", "std::exit", "abort", "::abort", "std::abort", "std::terminate", "std::quick_exit",
-    "ROS_BREAK",
-))  # fmt: skip
-ASSERTS = frozenset(("assert", "ROS_ASSERT"))
-# Methods of containers, strings and pointers; a message's fields have no others.
-ELEMENTS = frozenset(("at", "front", "back", "begin", "end", "cbegin", "cend", "rbegin", "rend"))
-POINTEES = frozenset(("get", "lock", "value", "getMessage", "getConstMessage"))
-LOOKS = frozenset((
-    "size", "empty", "length", "c_str", "capacity", "max_size", "has_value", "valid", "count", "isZero", "toSec",
-    "toNSec", "seconds", "nanoseconds", "expired", "use_count",
-))  # fmt: skip
-CHANGES = frozenset((
-    "push_back", "emplace_back", "emplace", "resize", "clear", "assign", "reserve", "insert", "erase", "pop_back",
-    "pop_front", "push_front", "swap", "reset", "append", "fill",
-))  # fmt: skip
-SILENT = ELEMENTS | {"size", "empty", "length", "c_str", "capacity", "has_value", "use_count"}

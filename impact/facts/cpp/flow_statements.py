@@ -17,7 +17,7 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import ASSERTS, KIND, NEVER_RETURNS, grammatical, kinds, listed_in, node_readers
+from .flow_grammar import KIND, grammatical, kinds, listed_in, node_readers
 from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
@@ -40,6 +40,11 @@ ALTERNATIVES = (KIND.preproc_else, KIND.preproc_elif, KIND.preproc_elifdef)
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _CONTINUE = re.compile(r"\bcontinue\b")
 _MARKS = re.compile(r"[()\[\]{}]|\|\||\?|,|(?<![=!<>])=(?!=)")
+NEVER_RETURNS = frozenset((
+    "exit", "_exit", "::exit", "std::exit", "abort", "::abort", "std::abort", "std::terminate", "std::quick_exit",
+    "ROS_BREAK",
+))  # fmt: skip
+ASSERTS = frozenset(("assert", "ROS_ASSERT"))
 LONGEST_COMPOSED = 3000
 MOST_CONDITIONS = 500
 MOST_VALUES = 64

@@ -13,32 +13,14 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 from tree_sitter import Node
 
 from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
-from .flow_grammar import (
-    BINDS,
-    CHANGES,
-    ELEMENTS,
-    JOINING,
-    KIND,
-    LISTS,
-    LITERALS,
-    LOOKS,
-    MAKES,
-    OPERATORS,
-    POINTEES,
-    SAFE,
-    SILENT,
-    THROUGH,
-    grammatical,
-    listed_in,
-    node_readers,
-    noise,
-)
+from .flow_grammar import KIND, LISTS, LITERALS, OPERATORS, grammatical, listed_in, node_readers
 
 # A position: kind of access, callee it is passed to, number of the argument.
 Position = tuple[str, str, int]
@@ -56,6 +38,45 @@ _PLAIN = re.compile(r"(this->)?([A-Za-z_]\w*)(?:(?:\.|->)[A-Za-z_]\w*)*")
 _ASIDE = re.compile(r'//[^\n]*|/\*.*?\*/|("(?:[^"\\]|\\.)*")', re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", '"': '"', "'": "'", "0": "\0", "r": "\r"}
 _ESCAPED = re.compile(r"\\(.)", re.DOTALL)
+
+JOINING = frozenset("+/%")
+SAFE = frozenset(("-", "*", "/", "%", "<", ">", "<=", ">=", "&&", "||", "&", "|", "^"))
+# Calls that are no news: what they are given counts, themselves they do not.
+_NOISE = re.compile(
+    r"(?:ROS|RCLCPP|RCUTILS|NODELET|RCLC)_(?:DEBUG|INFO|WARN|ERROR|FATAL|LOG|SAFE_FWRITE|ASSERT|BREAK)\w*"
+    r"|(?:EXPECT|ASSERT)_\w+|CONSOLE_BRIDGE_log\w+|assert"
+)
+
+
+@lru_cache(maxsize=4096)
+def noise(callee: str) -> bool:
+    """Whether a function only logs or checks."""
+    return _NOISE.fullmatch(callee) is not None
+
+
+# Functions that give what they are given.
+THROUGH = frozenset((
+    "std::move", "std::forward", "std::as_const", "std::ref", "std::cref", "boost::ref", "std::get",
+    "static_cast", "dynamic_cast", "const_cast", "reinterpret_cast",
+    "std::static_pointer_cast", "std::dynamic_pointer_cast", "std::const_pointer_cast",
+    "boost::static_pointer_cast", "boost::dynamic_pointer_cast", "boost::const_pointer_cast",
+))  # fmt: skip
+BINDS = frozenset(("std::bind", "boost::bind", "bind", "std::bind_front", "std::mem_fn", "boost::mem_fn"))
+MAKES = frozenset((
+    "std::make_shared", "std::make_unique", "boost::make_shared", "boost::make_unique", "make_shared", "make_unique",
+))  # fmt: skip
+# Methods of containers, strings and pointers; a message's fields have no others.
+ELEMENTS = frozenset(("at", "front", "back", "begin", "end", "cbegin", "cend", "rbegin", "rend"))
+POINTEES = frozenset(("get", "lock", "value", "getMessage", "getConstMessage"))
+LOOKS = frozenset((
+    "size", "empty", "length", "c_str", "capacity", "max_size", "has_value", "valid", "count", "isZero", "toSec",
+    "toNSec", "seconds", "nanoseconds", "expired", "use_count",
+))  # fmt: skip
+CHANGES = frozenset((
+    "push_back", "emplace_back", "emplace", "resize", "clear", "assign", "reserve", "insert", "erase", "pop_back",
+    "pop_front", "push_front", "swap", "reset", "append", "fill",
+))  # fmt: skip
+SILENT = ELEMENTS | {"size", "empty", "length", "c_str", "capacity", "has_value", "use_count"}
 
 
 def flat(text: str) -> str:

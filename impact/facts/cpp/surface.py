@@ -14,17 +14,7 @@ from typing import Any, NamedTuple
 
 from ..surface import Entity, HeaderSurface
 from .lexical import Scan, includes_of, scan
-from .surface_declarations import (
-    ClassHead,
-    Declarator,
-    Head,
-    class_head,
-    declarators,
-    declared,
-    head_of,
-    names_variables,
-    without_deprecation,
-)
+from .surface_declarations import ClassHead, Declarator, Head, class_head, declared, head_of, without_deprecation
 from .surface_directives import HIDDEN, conditions_at, warning_of, without_directives
 from .surface_enums import enumerators
 from .surface_macros import DECLARES, expansion
@@ -107,15 +97,9 @@ class _Reader:
             both = [path for path in taken if any(path == name or path.endswith("/" + name) for name in named)]
             instead = both[0] if both else taken[0] if len(taken) == 1 else ""
         return HeaderSurface(
-            tuple(self.entities),
-            includes,
-            tuple(dict.fromkeys(self.inline)),
-            self.deprecated,
-            instead,
-            self.lost,
-            tuple(scanned.problems),
-            tuple(self.announced),
-        )
+            tuple(self.entities), includes, tuple(dict.fromkeys(self.inline)), self.deprecated, instead, self.lost,
+            tuple(scanned.problems), tuple(self.announced),
+        )  # fmt: skip
 
     def _walk(self) -> None:
         code = self.code
@@ -592,3 +576,47 @@ def _is_macro_before_section(tokens: Sequence[str], place: int) -> bool:
     if behind < len(tokens) and tokens[behind] == "(":
         behind = closed(tokens, behind)
     return behind < len(tokens) and (tokens[behind] in _ACCESS or word in DECLARES)
+
+
+def names_variables(tail: Sequence[str]) -> bool:
+    """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
+    return not tail or (
+        len(tail) < 60
+        and "(" not in [word for word in tail if word == "operator"]
+        and not any(
+            word
+            in ("class", "struct", "namespace", "using", "typedef", "enum", "template", "public", "private", "static")
+            for word in tail
+        )
+    )
+
+
+def declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
+    """Names behind a closing brace, with the pointers and array bounds they have."""
+    found = []
+    for piece in split(list(tail)):
+        stars = "".join(word for word in piece if word in ("*", "&"))
+        place = 0
+        name = ""
+        while place < len(piece):
+            word = piece[place]
+            if word in ("__attribute__", "__declspec", "alignas"):
+                place = closed(piece, place + 1) if place + 1 < len(piece) else place + 1
+                continue
+            if word in ("=", ":", "{"):
+                break
+            if word == "[":
+                behind = closed(piece, place)
+                if name and piece[place + 1 : place + 2] != ["["]:
+                    stars += joined(piece[place:behind])
+                place = behind
+                continue
+            if word == "(":
+                place = closed(piece, place)
+                continue
+            if word.isidentifier() and word not in ("const", "volatile"):
+                name = name if name else word
+            place += 1
+        if name and not (name.isupper() and name.endswith("PACKED")):
+            found.append((name, stars))
+    return found

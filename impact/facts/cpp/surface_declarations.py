@@ -349,7 +349,7 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator]
         elif token in ("=", ",", ":", "{"):
             break
         elif token == "operator":
-            return _operator(rest, place, units, head)
+            return _operator(rest, place, head)
         elif token in ASIDE and (behind := behind_aside(rest, place)) > place:
             builtin = builtin or token in DEDUCED
             place = behind
@@ -520,7 +520,7 @@ def _function(
     return Declarator(kind, name, type_, parameters, frozenset(traits))
 
 
-def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: Head) -> list[Declarator] | None:
+def _operator(rest: list[str], place: int, head: Head) -> list[Declarator] | None:
     """A function whose name begins with `operator`."""
     if place and rest[place - 1] == "::":
         return []
@@ -613,48 +613,4 @@ def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
         kind = "alias" if "typedef" in head.words else "variable"
         keep = kind == "variable" and traits & {"const", "constexpr"} and len(value) <= 60
         found.append(Declarator(kind, name, type_, None, traits, value if keep else ""))
-    return found
-
-
-def names_variables(tail: Sequence[str]) -> bool:
-    """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
-    return not tail or (
-        len(tail) < 60
-        and "(" not in [word for word in tail if word == "operator"]
-        and not any(
-            word
-            in ("class", "struct", "namespace", "using", "typedef", "enum", "template", "public", "private", "static")
-            for word in tail
-        )
-    )
-
-
-def declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
-    """Names behind a closing brace, with the pointers and array bounds they have."""
-    found = []
-    for piece in split(list(tail)):
-        stars = "".join(word for word in piece if word in ("*", "&"))
-        place = 0
-        name = ""
-        while place < len(piece):
-            word = piece[place]
-            if word in ("__attribute__", "__declspec", "alignas"):
-                place = closed(piece, place + 1) if place + 1 < len(piece) else place + 1
-                continue
-            if word in ("=", ":", "{"):
-                break
-            if word == "[":
-                behind = closed(piece, place)
-                if name and piece[place + 1 : place + 2] != ["["]:
-                    stars += joined(piece[place:behind])
-                place = behind
-                continue
-            if word == "(":
-                place = closed(piece, place)
-                continue
-            if word.isidentifier() and word not in ("const", "volatile"):
-                name = name if name else word
-            place += 1
-        if name and not (name.isupper() and name.endswith("PACKED")):
-            found.append((name, stars))
     return found

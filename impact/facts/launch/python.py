@@ -228,11 +228,16 @@ class Walker:
             self.under(statement.body, ActionCondition("each", (other(over),), statement.lineno))
         else:
             for turn in turns:
-                value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
-                self.bind(statement.target, value)
+                extra = self.bind_turn(statement.target, turn)
                 if self.under(statement.body, *extra) and not _continues(statement.body):
                     break
         self.block(statement.orelse)
+
+    def bind_turn(self, target: ast.expr, turn: Any) -> tuple[ActionCondition, ...]:
+        """Binds the variable of a loop for one turn; gives the conditions that this one stands under."""
+        value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
+        self.bind(target, value)
+        return extra
 
     def bind_unknown(self, target: ast.expr) -> None:
         for node in ast.walk(target):
@@ -572,11 +577,8 @@ class Walker:
                 start = len(self.conditions)
                 if unknown:
                     self.bind_unknown(generator.target)
-                elif isinstance(turn, Guarded):
-                    self.conditions += turn.conditions
-                    self.bind(generator.target, turn.value)
                 else:
-                    self.bind(generator.target, turn)
+                    self.conditions += self.bind_turn(generator.target, turn)
                 truths = [self.truth(test) for test in generator.ifs]
                 if not any(truth is False for truth in truths):
                     self.conditions += [

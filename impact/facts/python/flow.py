@@ -10,18 +10,7 @@ from ....edges.dispatch import node_methods
 from ..flow import Access, Alias, Assignment, FlowExpr, FlowFile
 from ..place import Problem
 from .flow_body import Body, ClassBody
-from .flow_conditions import (
-    EXITS,
-    JUMPS,
-    STAYS,
-    AskedCondition,
-    HoldingCondition,
-    Leaving,
-    breaks,
-    either,
-    test,
-    within,
-)
+from .flow_conditions import JUMPS, STAYS, AskedCondition, HoldingCondition, Leaving, either, test, within
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
 
@@ -29,6 +18,8 @@ _OPERATORS = {
     ast.Add: "+=", ast.Sub: "-=", ast.Mult: "*=", ast.Div: "/=", ast.FloorDiv: "//=", ast.Mod: "%=", ast.Pow: "**=",
     ast.LShift: "<<=", ast.RShift: ">>=", ast.BitOr: "|=", ast.BitXor: "^=", ast.BitAnd: "&=", ast.MatMult: "@=",
 }  # fmt: skip
+# Calls that never return.
+EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
 # Of `a = b = ...`, each of which repeats the value.
 MOST_TARGETS = 16
 # What stands behind these is no function when it is named.
@@ -529,6 +520,24 @@ class PythonStatements(Expressions):
 
     def add_assignment(self, target: str, value: FlowExpr, line: int, operator: str) -> None:
         self.assignments.append(Assignment(target, value, line, self.guard, "", operator))
+
+
+def breaks(statements: list[ast.stmt]) -> bool:
+    """Whether a loop over these statements can be left by `break`."""
+    stack: list[ast.AST] = list(statements)
+    while stack:
+        node = stack.pop()
+        cls = node.__class__
+        if cls is ast.Break:
+            return True
+        if cls in (ast.For, ast.While, ast.AsyncFor):
+            stack.extend(node.orelse)  # type: ignore[attr-defined]
+        elif cls in (ast.If, ast.With, ast.AsyncWith, ast.Try) or cls.__name__ in ("TryStar", "Match"):
+            for field in ("body", "orelse", "finalbody"):
+                stack.extend(getattr(node, field, ()))
+            for part in (*getattr(node, "handlers", ()), *getattr(node, "cases", ())):
+                stack.extend(part.body)
+    return False
 
 
 def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:

@@ -21,8 +21,6 @@ Leaving = tuple[HoldingCondition, ...] | None
 STAYS: tuple[HoldingCondition, ...] = ()
 JUMPS = None
 
-# Calls that never return.
-EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
 LONGEST_COMPOSED = 1000
 _LOOSE = (ast.IfExp, ast.Lambda, ast.NamedExpr, ast.Yield, ast.YieldFrom)
 
@@ -79,21 +77,3 @@ def _opposite(condition: HoldingCondition) -> str:
     if condition.kind == "unless":
         return f"({condition.text})" if " or " in condition.text or " else " in condition.text else condition.text
     return f"not ({condition.text})" if condition.kind == "if" else ""
-
-
-def breaks(statements: list[ast.stmt]) -> bool:
-    """Whether a loop over these statements can be left by `break`."""
-    stack: list[ast.AST] = list(statements)
-    while stack:
-        node = stack.pop()
-        cls = node.__class__
-        if cls is ast.Break:
-            return True
-        if cls in (ast.For, ast.While, ast.AsyncFor):
-            stack.extend(node.orelse)  # type: ignore[attr-defined]
-        elif cls in (ast.If, ast.With, ast.AsyncWith, ast.Try) or cls.__name__ in ("TryStar", "Match"):
-            for field in ("body", "orelse", "finalbody"):
-                stack.extend(getattr(node, field, ()))
-            for part in (*getattr(node, "handlers", ()), *getattr(node, "cases", ())):
-                stack.extend(part.body)
-    return False

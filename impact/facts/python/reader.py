@@ -653,7 +653,7 @@ class PythonReader(ObjectUses, SourceText):
             if isinstance(name, str) and isinstance(default, str):
                 self.launch_defaults[name] = default
         elif "package" in keywords:
-            self.launched(node, keywords)
+            self.launched(keywords)
         elif function in _COMMAND_CALLS:
             self.command(node, keywords)
         elif function == "FindExecutable":
@@ -719,7 +719,7 @@ class PythonReader(ObjectUses, SourceText):
             if argument is not None and package is not None:
                 self.refer("package", package[0], "", argument, conditional or package[1])
 
-    def launched(self, node: ast.Call, keywords: dict) -> None:
+    def launched(self, keywords: dict) -> None:
         """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
         package = self.package_name(keywords["package"])
         if package is None:

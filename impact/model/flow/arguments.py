@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from ...facts.flow import FlowCall, FlowExpr
-from .code import FlowCode, Fn, Variable, around, is_number, tail
+from .code import FlowCode, Fn, around, is_number, tail
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
@@ -25,7 +25,6 @@ class CommandLine:
 
     def __init__(self, code: FlowCode):
         self.code = code
-        self._parsers: dict[Variable, list[tuple[tuple[str, ...], dict[str, object]]] | None] = {}
 
     def start(self, value: FlowExpr, fn: Fn, depth: int = 0) -> int | None:
         """The place in argv at which the list that an expression is begins: 0 for argv itself; None for other lists."""

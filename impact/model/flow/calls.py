@@ -302,8 +302,6 @@ class Calls:
         text, source, scope = self.code.declared_type(variable, fn)
         return self.code.meant_type(text, source, scope) if text else FlowType("")
 
-    # Arguments
-
     def argument(self, use: FrameworkCall, spots: tuple[Spot, ...]) -> FlowExpr | None:
         """The first of some spots that a use has."""
         call = use.call

@@ -465,8 +465,6 @@ class Sites:
                     return name
         return ""
 
-    # Callbacks
-
     def _callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
         row = use.row
         if not row.callback:
@@ -784,8 +782,6 @@ class Sites:
         text = self.values.of(value, fn)[0].text
         return LOST if text is None else text
 
-    # Publish statements
-
     @cached_property
     def kept(self) -> dict[Variable, list[Site]]:
         """Publishers by the variable that keeps them."""
@@ -924,8 +920,6 @@ class Sites:
                     positional = [argument for argument in arguments if argument.kind != "keyword"]
                     if place[0] < len(positional) and positional[place[0]].kind == "name":
                         yield from self.publishers(positional[place[0]].text, caller, depth + 1)
-
-    # Timers
 
     @cached_property
     def timers(self) -> list[TimerSite]:

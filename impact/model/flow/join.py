@@ -100,8 +100,6 @@ class Join:
         self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
         self._leading: dict[int, frozenset[int]] = {}
 
-    # Nodes
-
     def running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
         return list(self._running)
@@ -225,8 +223,6 @@ class Join:
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
 
-    # Guards
-
     def guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
         """The guards at a place of a function, outermost first."""
         found: list[Guard] = []
@@ -297,8 +293,6 @@ class Join:
             kind = "start" if starts else "unknown"
             found.append(Way(Trigger(kind, tail(fn.name), fn.source.path, fn.facts.line)))
         return list(dict.fromkeys(found))
-
-    # The graph
 
     def graph(
         self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None
