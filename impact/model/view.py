@@ -12,6 +12,7 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ...edges.memory import cached_method
 from ...edges.reach import Reach
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
@@ -108,38 +109,19 @@ class TargetView:
         self.asked = asked
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
-        self._closures: dict[str, frozenset[str]] = {}
-        self._direct: dict[str, tuple[str, ...]] = {}
         self._whole: dict[str, frozenset[str]] = {}
-        self._widest: dict[str, frozenset[str]] = {}
         self._possible: dict[str, frozenset[str]] = {}
         self._spreads: dict[frozenset[str], frozenset[str]] = {}
-        self._declared: dict[str, Mapping[str, set[str]]] = {}
-        self._needs: dict[str, tuple[Need, ...]] = {}
-        self._weighed: dict[str, tuple[Need, ...]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
-        self._headers: dict[str, tuple[Provider, ...]] = {}
-        self._cmake: dict[str, tuple[Provider, ...]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
-        self._debian: dict[str, frozenset[str]] = {}
         self._opaque: dict[str, list[str]] = {}
         self._unknown: dict[str, tuple[str, ...]] = {}
-        self._around: dict[str, frozenset[str]] = {}
-        self._files: dict[str, tuple[str, ...]] = {}
-        self._libraries_of: dict[str, list[str]] = {}
-        self._languages: dict[str, int] = {}
-        self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
-        self._standard: dict[str, bool] = {}
-        self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
-        self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, message_headers.Definitions] = {}
-        self._lost: dict[str, Availability | None] = {}
-        self._offers_ahead: dict[str, tuple[Offers, PythonOffers]] = {}
         self._environments: dict[str, Environment] = {}
         # What rules worked out for each package and several of them ask for.
         self.worked_out: dict[tuple[str, str], Any] = {}
@@ -219,10 +201,9 @@ class TargetView:
         conditions = tuple(conditions)
         return not conditions or self._hold(conditions) is True
 
+    @cached_method
     def _hold(self, conditions: tuple[Condition, ...]) -> bool | None:
-        if conditions not in self._held:
-            self._held[conditions] = all_hold(conditions, self.environment)
-        return self._held[conditions]
+        return all_hold(conditions, self.environment)
 
     def standard(self, package: Package) -> tuple[int, At] | None:
         """The highest C++ standard that a package sets for everything on this target, and where."""
@@ -230,19 +211,17 @@ class TargetView:
         held = [(number, at) for number, at, conditions in build.standards if self.active(conditions)]
         return max(held, key=lambda entry: standard_year(entry[0])) if held else None
 
+    @cached_method
     def language(self, package: Package) -> int:
         """The year of the highest C++ standard that a part of a package may be compiled under on this target, as far
         as the workspace tells: what it sets itself or packages that it finds do, C++17, or the compiler's default."""
-        known = self._languages.get(package.name)
-        if known is None:
-            years = [2017, default_standard(self.target) or 2017]
-            for name in {package.name, *self.spread(found.name for found in package.build.found)}:
-                own = self.workspace.packages.get(name)
-                if own is not None:
-                    years.extend(standard_year(number) for number, *_ in own.build.standards)
-                    years.extend(standard_year(max(t.standard, t.public_standard)) for t in own.build.targets)
-            known = self._languages[package.name] = max(years)
-        return known
+        years = [2017, default_standard(self.target) or 2017]
+        for name in {package.name, *self.spread(found.name for found in package.build.found)}:
+            own = self.workspace.packages.get(name)
+            if own is not None:
+                years.extend(standard_year(number) for number, *_ in own.build.standards)
+                years.extend(standard_year(max(t.standard, t.public_standard)) for t in own.build.targets)
+        return max(years)
 
     def language_asked(self, package: Package) -> int:
         """The same, and what the released packages ask for that come along with those which it finds."""
@@ -314,18 +293,16 @@ class TargetView:
         earlier = [name for name, place in DISTROS.items() if first <= place < last]
         return tuple(machine_of(name, self.target.ros) for name in reversed(earlier))
 
+    @cached_method
     def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
         """What these include paths bring along in the workspace: paths of other places, and of its own headers; those
         that it generates from interfaces are among both."""
-        known = self._outward_of.get(paths)
-        if known is None:
-            reached = along = 0
-            for path in paths:
-                leads, beside = self._reach_of_headers.masks(path)
-                reached |= leads
-                along |= beside
-            known = self._outward_of[paths] = self._outward_by_masks(reached, along)
-        return known
+        reached = along = 0
+        for path in paths:
+            leads, beside = self._reach_of_headers.masks(path)
+            reached |= leads
+            along |= beside
+        return self._outward_by_masks(reached, along)
 
     def _outward_by_masks(self, reached: int, along: int) -> tuple[frozenset[str], frozenset[str]]:
         """What outward() says where an include leads to these headers. One answer is one object, so that joins of it
@@ -351,16 +328,14 @@ class TargetView:
             leads += self._inner.get(file, ())
         return leads, [f"/{file}".rpartition("/include/")[2] for file in files]
 
+    @cached_method
     def _made_of(self, path: str) -> tuple[str, ...]:
         """The generated headers that one which the workspace generates includes, itself first; none for others."""
-        known = self._made.get(path)
-        if known is None:
-            package, inner = message_headers.package_of(path, self.target.ros), None
-            if package is not None and package in self.workspace.packages:
-                interfaces = self._own_interfaces(package)
-                inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
-            known = self._made[path] = () if inner is None else (path, *inner)
-        return known
+        package, inner = message_headers.package_of(path, self.target.ros), None
+        if package is not None and package in self.workspace.packages:
+            interfaces = self._own_interfaces(package)
+            inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
+        return () if inner is None else (path, *inner)
 
     def _own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
@@ -383,14 +358,9 @@ class TargetView:
         """True when a header of the workspace answers an include path."""
         return bool(self._files_of(path))
 
+    @cached_method
     def _files_of(self, path: str) -> tuple[str, ...]:
         """The headers of the workspace that an include path names; a file's own path names itself."""
-        known = self._files.get(path)
-        if known is None:
-            known = self._files[path] = self._headers_named(path)
-        return known
-
-    def _headers_named(self, path: str) -> tuple[str, ...]:
         if path in self._header_files:
             return (path,)
         ending, found = "/" + path.lstrip("./"), []
@@ -437,12 +407,10 @@ class TargetView:
         """True for packages that the configuration calls one's own."""
         return name in self.config.private
 
+    @cached_method
     def is_standard(self, header: str) -> bool:
         """True for headers of the C and C++ standard libraries and of the operating system."""
-        known = self._standard.get(header)
-        if known is None:
-            known = self._standard[header] = any(not p.name for p in self.providers.header(header))
-        return known
+        return any(not p.name for p in self.providers.header(header))
 
     def header_availability(self, path: str) -> Availability | None:
         """How the target stands to a header of released packages; None where something else may have it."""
@@ -452,16 +420,12 @@ class TargetView:
             return None
         return self.availability(Symbol("header", path, tuple(owners)))
 
+    @cached_method
     def lost_header(self, path: str) -> Availability | None:
         """How the target stands to a header that every released package which has, or had, it lacks in its version
         here, where header_availability() does not tell. Its form is `broken` where the workspace names it and nobody
         makes it, `platform` where nobody is known to have it, so that whatever brings unknown contents may, `nested`
         where it is installed under another path."""
-        if path not in self._lost:
-            self._lost[path] = self._lost_header(path)
-        return self._lost[path]
-
-    def _lost_header(self, path: str) -> Availability | None:
         target, symbol = self.target, Symbol("header", path)
         if path in self.workspace.broken_headers:
             return Availability(symbol, "removed", form="broken")
@@ -512,23 +476,16 @@ class TargetView:
                 return other
         return ""
 
+    @cached_method
     def around(self, path: str) -> frozenset[str]:
         """Who could answer an include path, all that is installed along with them, and the platform libraries that
         these names stand for; empty when nobody could."""
-        known = self._around.get(path)
-        if known is None:
-            names = self.spread(provider.name for provider in self.header(path))
-            known = self._around[path] = names.union(*map(self.libraries_of, names))
-        return known
+        names = self.spread(provider.name for provider in self.header(path))
+        return names.union(*map(self.libraries_of, names))
 
+    @cached_method
     def libraries_of(self, name: str) -> list[str]:
         """Platform libraries whose version a rosdep key or CMake name stands for."""
-        known = self._libraries_of.get(name)
-        if known is None:
-            known = self._libraries_of[name] = self._named_libraries(name)
-        return known
-
-    def _named_libraries(self, name: str) -> list[str]:
         folded = name.lower().removeprefix("lib").removesuffix("-dev").removesuffix("-all")
         known = self._library_names
         return [n for n in dict.fromkeys((name.lower(), folded, folded.rstrip("0123456789"))) if n in known]
@@ -572,13 +529,11 @@ class TargetView:
                 found.setdefault(change.old, (change, ahead))
         return found
 
+    @cached_method
     def offers_on(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
         """What released packages offer on a horizon."""
-        known = self._offers_ahead.get(ahead.name)
-        if known is None:
-            offers = Offers(ahead.target)
-            known = self._offers_ahead[ahead.name] = offers, PythonOffers(offers)
-        return known
+        offers = Offers(ahead.target)
+        return offers, PythonOffers(offers)
 
     def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
         """False when a statement under these conditions surely does not count on a horizon."""
@@ -624,12 +579,10 @@ class TargetView:
         roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
 
+    @cached_method
     def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
-        known = self._declared.get(package.name)
-        if known is None:
-            known = self._declared[package.name] = MappingProxyType(self._declares(package))
-        return known
+        return MappingProxyType(self._declares(package))
 
     def _declares(self, package: Package) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}
@@ -651,13 +604,10 @@ class TargetView:
             return ()
         return [d.name for d in released if d.kind in _INSTALLED_WITH]
 
+    @cached_method
     def closure(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        known = self._closures.get(package.name)
-        if known is None:
-            known = self.spread(self._built_with(package)).union(self.preinstalled, (package.name,))
-            self._closures[package.name] = known
-        return known
+        return self.spread(self._built_with(package)).union(self.preinstalled, (package.name,))
 
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
@@ -674,13 +624,11 @@ class TargetView:
         """What the build farm puts on every machine besides the platform's compiler: the workspace of ROS 2."""
         return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
+    @cached_method
     def may_bring(self, package: Package) -> frozenset[str]:
         """closure(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
-        known = self._widest.get(package.name)
-        if known is None:
-            known = self._widest[package.name] = self.widest_spread(self.closure(package))
-        return known
+        return self.widest_spread(self.closure(package))
 
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
@@ -749,11 +697,9 @@ class TargetView:
             known = self._whole[name] = frozenset(found)
         return known
 
+    @cached_method
     def _installed_with(self, name: str) -> tuple[str, ...]:
-        known = self._direct.get(name)
-        if known is None:
-            known = self._direct[name] = tuple(self.installed_with(name))
-        return known
+        return tuple(self.installed_with(name))
 
     def blind(self, package: Package, name: str = "") -> bool:
         """True when dependencies of something in the closure are not known anywhere, so that it may lack something; or
@@ -799,13 +745,11 @@ class TargetView:
         types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
         return not types.isdisjoint(("cmake", "meson")) and self.offers.package(name) is None
 
+    @cached_method
     def debian(self, name: str) -> frozenset[str]:
         """What a rosdep key installs here."""
-        known = self._debian.get(name)
-        if known is None:
-            resolution = self.target.resolve(name)
-            known = self._debian[name] = frozenset(resolution.packages if resolution else ())
-        return known
+        resolution = self.target.resolve(name)
+        return frozenset(resolution.packages if resolution else ())
 
     def answered(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
@@ -846,12 +790,10 @@ class TargetView:
                 self._reached[id(names)] = known
         return known[1], known[2]
 
+    @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
-        known = self._headers.get(path)
-        if known is None:
-            known = self._headers[path] = tuple(self._header(path))
-        return known
+        return tuple(self._header(path))
 
     def _header(self, path: str) -> list[Provider]:
         if "/" not in path and self.is_standard(path):
@@ -896,24 +838,22 @@ class TargetView:
         """True when the workspace has a package of this name, or any distro ever released one."""
         return name in self.workspace.packages or self.target.ever_released(name)
 
+    @cached_method
     def cmake(self, name: str) -> tuple[Provider, ...]:
         """Who could answer find_package(name)."""
-        known = self._cmake.get(name)
-        if known is None:
-            own = self.workspace.provides_cmake.get(name)
-            found = [Provider("ros", own)] if own else []
-            if not own:
-                # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so.
-                for spelling in dict.fromkeys((name, name.lower())):
-                    if self.target.version(spelling) is not None or spelling in self.workspace.packages:
-                        found.append(Provider("ros", spelling))
-                found.extend(self._cmake_elsewhere(name))
-                if not found:
-                    # `gz-sim8` is what gz_sim_vendor brings.
-                    vendor = re.sub(r"\d+$", "", name).replace("-", "_").lower() + "_vendor"
-                    found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.ever_released(n)]
-            known = self._cmake[name] = tuple(found)
-        return known
+        own = self.workspace.provides_cmake.get(name)
+        found = [Provider("ros", own)] if own else []
+        if not own:
+            # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so.
+            for spelling in dict.fromkeys((name, name.lower())):
+                if self.target.version(spelling) is not None or spelling in self.workspace.packages:
+                    found.append(Provider("ros", spelling))
+            found.extend(self._cmake_elsewhere(name))
+            if not found:
+                # `gz-sim8` is what gz_sim_vendor brings.
+                vendor = re.sub(r"\d+$", "", name).replace("-", "_").lower() + "_vendor"
+                found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.ever_released(n)]
+        return tuple(found)
 
     def _cmake_elsewhere(self, name: str) -> list[Provider]:
         known = self.providers.cmake(name)
@@ -955,19 +895,15 @@ class TargetView:
             known = self._modules[module] = tuple(found)
         return known
 
+    @cached_method
     def needs(self, package: Package) -> tuple[Need, ...]:
         """Everything a package uses of others on this target."""
-        known = self._needs.get(package.name)
-        if known is None:
-            known = self._needs[package.name] = tuple(self._collect(package))
-        return known
+        return tuple(self._collect(package))
 
+    @cached_method
     def weighed(self, package: Package) -> tuple[Need, ...]:
         """The same, what is surest to break first."""
-        known = self._weighed.get(package.name)
-        if known is None:
-            known = self._weighed[package.name] = tuple(sorted(self.needs(package), key=weight))
-        return known
+        return tuple(sorted(self.needs(package), key=weight))
 
     def _collect(self, package: Package) -> Iterator[Need]:
         digest = package.digest

@@ -223,13 +223,6 @@ def _docker(text: str, data: Snapshot | None) -> DistroTarget:
     return DistroTarget(found[0], None, found[1], None, text, data)
 
 
-class NamedDistro(NamedTuple):
-    """A distro and the file (or branch) that names it."""
-
-    distro: str
-    where: str
-
-
 _CI_FILE = re.compile(
     r"(?:^|/)(?:\.github/workflows/[^/]+\.ya?ml|\.gitlab-ci\.ya?ml|\.gitlab/[^/]+\.ya?ml|\.travis\.ya?ml"
     r"|\.circleci/config\.ya?ml|azure-pipelines\.ya?ml|Jenkinsfile|\.devcontainer/(?:[^/]+/)?devcontainer\.json"

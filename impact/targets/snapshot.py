@@ -11,8 +11,7 @@ import datetime
 import hashlib
 import os
 import sqlite3
-import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,6 @@ from ...edges.files import read_file
 from ...edges.limits import limits
 from ...edges.memory import cached_method
 from ..cache import cache_folder
-from ..facts.store import FAULTS
 from . import unpacked
 from .unpacked import SnapshotError
 
@@ -164,9 +162,7 @@ class Snapshot:
         self.data = data
         self.facts = facts
         self._cache = cache
-        self._connection: sqlite3.Connection | None = None
-        self._reader = 0  # the process that opened it
-        self._lock = threading.Lock()
+        self._file = unpacked.UnpackedFile(self._raw_and_facts, self.path, "distro_fact")
         self._info: SnapshotInfo | None = None
 
     @property
@@ -182,16 +178,7 @@ class Snapshot:
 
     def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
         """All rows of a query. Raises SnapshotError when the data cannot be read."""
-        arguments = tuple(parameters)
-        with self._lock:
-            self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
-            try:
-                return self._connection.execute(sql, arguments).fetchall()
-            except FAULTS:
-                self._connection.close()
-                unpacked.distrust(self.path())
-                self._connection = unpacked.in_memory(*self._raw_and_facts())
-                return self._connection.execute(sql, arguments).fetchall()
+        return self._file.rows(sql, tuple(parameters))
 
     def row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
         """The first row of a query, None when there is none."""
@@ -209,14 +196,7 @@ class Snapshot:
         folder = self._cache or cache_folder()
         return folder / f"distros-{_FORMAT}-{self.info.sha256[:16]}-{facts[:16]}.sqlite"
 
-    def _open(self) -> sqlite3.Connection:
-        return unpacked.connect(self.path(), "distro_fact") or self._open_again()
-
-    def _open_again(self) -> sqlite3.Connection:
-        raw, add = self._raw_and_facts()
-        return unpacked.unpack(raw, add, self.path(), "distro_fact")
-
-    def _raw_and_facts(self) -> tuple[bytes, Callable[[sqlite3.Connection], None]]:
+    def _raw_and_facts(self) -> tuple[bytes, unpacked.AddFacts]:
         """What the file is made of: the database without the reviewed facts, and what adds them."""
         try:
             raw = unpack(self.data)

@@ -10,8 +10,9 @@ import hashlib
 import os
 import sqlite3
 import stat
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ...edges.console import UserError
@@ -53,18 +54,64 @@ def decompress(packed: Path, sha256: str, described: str) -> bytes:
     return raw
 
 
-def connect(path: Path, table: str) -> sqlite3.Connection | None:
-    """Opens a finished file; None when there is none or it is not whole. table: one that the facts fill."""
-    try:
-        return _connect(path, table) if _is_whole(path) else None
-    except (OSError, *FAULTS):
-        return None
+# What adds the reviewed facts to a database.
+AddFacts = Callable[[sqlite3.Connection], None]
 
 
-def distrust(path: Path) -> None:
-    """Lets later runs compare a file with what was unpacked, however whole it looks."""
-    with contextlib.suppress(OSError):
-        os.unlink(f"{path}{_SUM}")
+class UnpackedFile:
+    """A shipped database that is opened when it is first read; one that breaks while it is read is unpacked again, in
+    memory.
+
+    contents: gives its bytes, and what adds the reviewed facts to them. place: gives where the unpacked file belongs.
+    table: one that the facts fill. What these raise, reading raises."""
+
+    def __init__(self, contents: Callable[[], tuple[bytes, AddFacts]], place: Callable[[], Path], table: str):
+        self._contents, self._place, self._table = contents, place, table
+        self._connection: sqlite3.Connection | None = None
+        self._reader = 0  # the process that opened it
+        self._lock = threading.Lock()
+
+    def rows(self, sql: str, arguments: Sequence[object] = ()) -> list[tuple]:
+        """All rows of a query."""
+        with self._lock:
+            connection = self._open()
+            try:
+                return connection.execute(sql, arguments).fetchall()
+            except FAULTS:
+                connection.close()
+                # Later runs compare the file with what was unpacked, however whole it looks.
+                with contextlib.suppress(OSError):
+                    os.unlink(f"{self._place()}{_SUM}")
+                self._connection = _in_memory(*self._contents())
+                return self._connection.execute(sql, arguments).fetchall()
+
+    def _open(self) -> sqlite3.Connection:
+        """A connection of this process. In a forked one a file is opened anew: with its parent's connection both would
+        move each other's place in it. A database in memory is a copy."""
+        here = os.getpid()
+        known = self._connection
+        if known is None or (here != self._reader and known.execute("PRAGMA database_list").fetchone()[2]):
+            known = self._connection = self._open_whole() or self._unpack()
+        self._reader = here
+        return known
+
+    def _open_whole(self) -> sqlite3.Connection | None:
+        """The finished file; None when there is none or it is not whole."""
+        path = self._place()
+        try:
+            return _connect(path, self._table) if _is_whole(path) else None
+        except (OSError, *FAULTS):
+            return None
+
+    def _unpack(self) -> sqlite3.Connection:
+        """Makes the file and opens it; in memory where it cannot be written."""
+        raw, add_facts = self._contents()
+        path = self._place()
+        try:
+            _write(raw, add_facts, path)
+            return _connect(path, self._table)
+        except (OSError, *FAULTS):
+            return _in_memory(raw, add_facts)
 
 
 def _is_whole(path: Path) -> bool:
@@ -99,29 +146,6 @@ def _note(path: Path, digest: str) -> None:
         write_file(f"{path}{_SUM}", f"{digest} {_stamp(os.stat(path))}".encode())
 
 
-def of_this_process(
-    connection: sqlite3.Connection | None, opener: int, open: Callable[[], sqlite3.Connection]
-) -> tuple[sqlite3.Connection, int]:
-    """A connection to read with, and the process that opened it: those given, or one just opened.
-
-    In a forked process a file is opened anew: with its parent's connection both would move each other's place in it.
-    A database in memory is a copy.
-    """
-    here = os.getpid()
-    if connection is None or (here != opener and connection.execute("PRAGMA database_list").fetchone()[2]):
-        connection = open()
-    return connection, here
-
-
-def unpack(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Path, table: str) -> sqlite3.Connection:
-    """Makes the file from the database's bytes and opens it; in memory where it cannot be written."""
-    try:
-        _write(raw, add_facts, path)
-        return _connect(path, table)
-    except (OSError, *FAULTS):
-        return in_memory(raw, add_facts)
-
-
 def _connect(path: Path, table: str) -> sqlite3.Connection:
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
     try:
@@ -136,7 +160,7 @@ def _connect(path: Path, table: str) -> sqlite3.Connection:
     return connection
 
 
-def _write(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Path) -> None:
+def _write(raw: bytes, add_facts: AddFacts, path: Path) -> None:
     """Makes the unpacked file under another name and renames it, so that nobody ever sees half of it."""
     import tempfile
 
@@ -184,7 +208,7 @@ def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | N
     return getattr(connection, "deserialize", None)
 
 
-def in_memory(raw: bytes, add_facts: Callable[[sqlite3.Connection], None]) -> sqlite3.Connection:
+def _in_memory(raw: bytes, add_facts: AddFacts) -> sqlite3.Connection:
     """The database in memory alone. Raises SnapshotError."""
     connection = sqlite3.connect(":memory:", check_same_thread=False)
     deserialize = _deserializer(connection)

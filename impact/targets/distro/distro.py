@@ -705,12 +705,6 @@ def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
     return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
 
 
-def _platform_order() -> dict[str, int]:
-    from ..platform import CODENAMES
-
-    return {name: place for place, name in enumerate(CODENAMES.values())}
-
-
 def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
     row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
     return msgspec.json.decode(row[0], type=DistroFacts) if row else None

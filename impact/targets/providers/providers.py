@@ -7,7 +7,6 @@ remembers it.
 
 import hashlib
 import sqlite3
-import threading
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +16,6 @@ import msgspec
 
 from ....edges.memory import cached_method
 from ...cache import cache_folder
-from ...facts.store import FAULTS
 from .. import unpacked
 from ..snapshot import DATA, SnapshotError
 from ..target import Provider
@@ -78,9 +76,7 @@ class Providers:
 
     def __init__(self, data: Path = DATA, cache: Path | None = None):
         self._data, self._cache = data, cache
-        self._lock = threading.Lock()
-        self._connection: sqlite3.Connection | None = None
-        self._reader = 0  # the process that opened it
+        self._file = unpacked.UnpackedFile(self._contents, self._place, "fact")
         self._sets: dict[int, tuple[Provider, ...]] = {}
         self._patterns: dict[str, tuple[int, ...]] = {}
 
@@ -321,21 +317,27 @@ class Providers:
                 found[name.lower()] = [name]
         return found
 
-    def _open(self) -> sqlite3.Connection:
-        return _open(self._data, self._cache or cache_folder())
-
-    def _open_again(self) -> sqlite3.Connection:
-        return _open_again(self._data, self._cache or cache_folder())
-
     def _rows(self, sql: str, *arguments: object) -> list[tuple]:
-        with self._lock:
-            self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
-            try:
-                return self._connection.execute(sql, arguments).fetchall()
-            except FAULTS:
-                self._connection.close()
-                self._connection = self._open_again()
-                return self._connection.execute(sql, arguments).fetchall()
+        return self._file.rows(sql, arguments)
+
+    def _contents(self) -> tuple[bytes, unpacked.AddFacts]:
+        sha, facts = self._read_info()
+        raw = unpacked.decompress(self._data / "providers.sqlite.zst", sha, "providers.json")
+        return raw, lambda connection: add_facts(connection, facts)
+
+    def _place(self) -> Path:
+        sha, facts = self._read_info()
+        name = f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite"
+        return (self._cache or cache_folder()) / name
+
+    def _read_info(self) -> tuple[str, bytes]:
+        """The hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
+        info = self._data / "providers.json"
+        try:
+            facts = (self._data / "providers.yaml").read_bytes()
+            return msgspec.json.decode(info.read_bytes(), type=_Info).sha256, facts
+        except (OSError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
 
 
 def _once(providers: list[Provider]) -> list[Provider]:
@@ -369,36 +371,6 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
 
 class _Info(msgspec.Struct, frozen=True):
     sha256: str
-
-
-def _open(data: Path, cache: Path) -> sqlite3.Connection:
-    path, sha, facts = _place(data, cache)
-    connection = unpacked.connect(path, "fact")
-    if connection is not None:
-        return connection
-    return unpacked.unpack(_raw(data, sha), lambda connection: add_facts(connection, facts), path, "fact")
-
-
-def _open_again(data: Path, cache: Path) -> sqlite3.Connection:
-    """The same in memory, when the file turns out broken while it is read."""
-    path, sha, facts = _place(data, cache)
-    unpacked.distrust(path)
-    return unpacked.in_memory(_raw(data, sha), lambda connection: add_facts(connection, facts))
-
-
-def _place(data: Path, cache: Path) -> tuple[Path, str, bytes]:
-    """Where the unpacked file belongs, the hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
-    info = data / "providers.json"
-    try:
-        facts = (data / "providers.yaml").read_bytes()
-        sha = msgspec.json.decode(info.read_bytes(), type=_Info).sha256
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
-    return cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite", sha, facts
-
-
-def _raw(data: Path, sha: str) -> bytes:
-    return unpacked.decompress(data / "providers.sqlite.zst", sha, "providers.json")
 
 
 def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
