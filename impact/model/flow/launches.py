@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import msgspec
 
 from ...facts.store import encodable
+from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, file_values
 from ..package import role_of_folder
@@ -118,12 +119,13 @@ def _launches(workspace: Workspace, code: Callable[[], Join]) -> Iterator[Launch
 
 def _followed(workspace: Workspace) -> list[tuple[str, Launched, InWorkspace]]:
     """Each launch file that no other includes, followed."""
-    sources = InWorkspace(workspace)
+    sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[tuple[str, Launched, InWorkspace]] = []
     included: set[str] = set()
     left = _MOST_ACTIONS
     for package, path, inner in _files(workspace):
-        launch = follow(package, inner, sources, {}, generation=workspace.ros, most=min(MOST_ACTIONS, left))
+        most = min(MOST_ACTIONS, left)
+        launch = follow(package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed)
         left = max(1, left - launch.actions)
         found.append((path, launch, sources))
         own, *others = launch.files or (("", ""),)
