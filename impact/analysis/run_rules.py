@@ -121,6 +121,8 @@ def _run_in_parts(
     """What the rules yield for these views, each with its place among them, and flow_rules on the message flow, with
     _FLOW for a place; failed: receives those of them that failed."""
     packages = list(opened.workspace.packages)
+    from ..model.flow.workspace import flow_of
+
     if not packages or not processes.may_fork():
         for place in places:
             yield place, list(_run_all(rules, opened.views[place], crashed))
@@ -132,6 +134,8 @@ def _run_in_parts(
     # A rule that does not end on a package must not stop the run: no rule runs in this process.
     size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs) if jobs > 1 else len(packages)))
     parts = [(place, at) for place in places for at in range(0, len(packages), size)]
+    if flow_rules:
+        flow_of(opened.workspace).jobs = jobs
     # The message flow takes longest.
     tasks = [(_FLOW, 0), *parts] if flow_rules else parts
     done = {}

@@ -40,6 +40,8 @@ class WorkspaceFlow:
 
     def __init__(self, workspace: Workspace):
         self._workspace, self._store = workspace, workspace.gathered.store
+        # Processes to use.
+        self.jobs = 1
 
     @cached_property
     def code(self) -> Join:
@@ -61,7 +63,7 @@ class WorkspaceFlow:
         """What its launch files start, see launches()."""
         from .launches import launches
 
-        return launches(self._workspace, lambda: self.code)
+        return launches(self._workspace, lambda: self.code, self.jobs)
 
 
 def flow_of(workspace: Workspace) -> WorkspaceFlow:
