@@ -221,8 +221,8 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
 
 def _parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
-    for use in join.calls.uses:
-        if use.row.does == "parameter" and id(use.fn) in one.functions:
+    for use in join.calls.doing("parameter"):
+        if id(use.fn) in one.functions:
             found.update(value.text for value in join.asked(use) if value.text)
     return found
 
