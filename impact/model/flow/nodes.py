@@ -10,7 +10,6 @@ from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .endpoints import Sites
 from .types import parsed
 
-
 # Kinds of arguments that may hand on a function.
 _HANDING = frozenset(("function", "name", "bind"))
 
