@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from ..facts.store import Store
 from ..model.flow.graph import Graph
-from ..model.flow.started import launched
 from ..model.flow.workspace import graph_of, linked
 from ..model.workspace import Workspace
 from ..tree import Tree, shown
@@ -64,6 +63,8 @@ def _linked(
 
 def _undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
     """A note for each argument that neither the launch file nor any that it includes declares."""
+    from ..model.flow.started import launched  # of no use to a graph of code alone
+
     declared = sorted({argument.name for argument in launched(workspace, launch, arguments).arguments})
     known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
     return tuple(

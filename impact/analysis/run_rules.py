@@ -140,6 +140,10 @@ def _run_in_parts(
     asked = {rule.family for rule in rules}
     families = [*(each for each in _LONGEST if each in asked), *sorted(asked.difference(_LONGEST))]
     parts = [(place, at, family) for place in places for family in families for at in range(0, len(packages), size)]
+    if flow_rules:
+        from ..model.flow.workspace import flow_of
+
+        flow_of(opened.workspace).jobs = jobs
     # The message flow takes longest.
     tasks = [_FLOW_TASK, *parts] if flow_rules else parts
     done = {}

@@ -65,8 +65,10 @@ def _words(text: str, first: int, room: int) -> list[str]:
 
 def shortened(path: str, room: int) -> str:
     """A path that is too long without some of its folders: the file's name says most, then the first folder."""
+    if cells(path) <= room:
+        return path
     folders = path.split("/")
     shorter = ["/".join([folders[0], "...", *folders[cut:]]) for cut in range(2, len(folders))]
     if len(folders) > 1:
         shorter.append(f".../{folders[-1]}")
-    return next((each for each in (path, *shorter) if cells(each) <= room), shorter[-1] if shorter else path)
+    return next((each for each in shorter if cells(each) <= room), shorter[-1] if shorter else path)

@@ -55,6 +55,17 @@ class Calls:
         found.sort(key=lambda use: (use.fn.source.path, use.call.line, use.call.column))
         return found
 
+    def doing(self, what: str) -> list[FrameworkCall]:
+        """The uses that do something, as their rows call it; in order."""
+        return self._doing.get(what, [])
+
+    @cached_property
+    def _doing(self) -> dict[str, list[FrameworkCall]]:
+        found: dict[str, list[FrameworkCall]] = {}
+        for use in self.uses:
+            found.setdefault(use.row.does, []).append(use)
+        return found
+
     def kinds_of(self, kind: FlowType, fn: Fn) -> frozenset[str]:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""
         if not kind.name:

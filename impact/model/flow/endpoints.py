@@ -167,7 +167,7 @@ class Sites:
                 found.extend(self._further(Site("publisher", use, (), "", self.prefix(use), "")))
         return found
 
-    @property
+    @cached_property
     def wrapped(self) -> list[FrameworkCall]:
         """Uses inside wrappers of the framework's own functions."""
         return [use for use in self.calls.uses if use.row.does in _ROLES and self.wraps(use.fn)]

@@ -107,7 +107,6 @@ class Join:
     @cached_property
     def _running(self) -> list[Running]:
         found: list[Running] = []
-        names = {id(use): use for use in self.calls.uses if use.row.does == "node"}
         for program in programs_of.programs(self.code, self.built, self._kinds):
             if program.kind in ("executable", "script"):
                 functions, classes = self.reach.of(program.roots)
@@ -118,7 +117,7 @@ class Join:
                     (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
                 )
                 functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
-            named = [use for use in names.values() if id(use.fn) in functions]
+            named = [use for use in self.calls.doing("node") if id(use.fn) in functions]
             found.append(Running(program, self._node(program, named), functions, classes, self.values))
         return found
 
@@ -356,9 +355,12 @@ class Join:
                 yield Timer(node.id if node else "", timer.period, _callback(timer.callbacks), *_place(timer.use))
 
     def _all_parameters(self, owners: _Owners) -> Iterator[ParameterUse]:
-        for use in self.calls.uses:
-            if use.row.does == "parameter" and not self.sites.wraps(use.fn, "parameter"):
-                yield from self._parameters(use, owners.of(use))
+        for use in self._uses_of_parameters:
+            yield from self._parameters(use, owners.of(use))
+
+    @cached_property
+    def _uses_of_parameters(self) -> list[FrameworkCall]:
+        return [use for use in self.calls.doing("parameter") if not self.sites.wraps(use.fn, "parameter")]
 
     def library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, TypeVar
 
 import msgspec
 
+from ....edges import processes
 from ...facts.store import encodable
+from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, file_values
 from ..package import role_of_folder
@@ -19,7 +22,13 @@ from .join import Join, Running
 from .names import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
 from .started import Instance, InWorkspace, launch_kind
 
+_Row = TypeVar("_Row")
+
 _MOST = 300
+# Starting processes costs about as much as following this many launch files.
+_ALONE = 8
+# A launch file may take as much time as a file of this size.
+_FILE_BYTES = 1 << 20
 _MOST_ACTIONS = 5 * MOST_ACTIONS  # of all launch files together
 
 
@@ -70,10 +79,14 @@ class Launch(msgspec.Struct, frozen=True):
     elsewhere: tuple[str, ...] = ()
 
 
-def launches(workspace: Workspace, code: Callable[[], Join]) -> tuple[Launch, ...]:
+_Followed = tuple[str, Launched]
+"""The path of a launch file and what it starts."""
+
+
+def launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1) -> tuple[Launch, ...]:
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
     content of all that it rests on. code: gives the code of the workspace, joined; not called where nothing is
-    started."""
+    started. jobs: processes to use."""
     store = workspace.gathered.store
     key = stamp(workspace)
     known = store.memo("launches", key) if store is not None else None
@@ -82,22 +95,46 @@ def launches(workspace: Workspace, code: Callable[[], Join]) -> tuple[Launch, ..
             return msgspec.msgpack.decode(known, type=tuple[Launch, ...])
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    found = tuple(_launches(workspace, code))
+    found = tuple(_launches(workspace, code, jobs))
     if store is not None:
         store.remember("launches", encodable([(key, found)]))
     return found
 
 
-def _launches(workspace: Workspace, code: Callable[[], Join]) -> Iterator[Launch]:
-    followed = list(_followed(workspace))
-    if not any(launch.started for _, launch, _ in followed):
+def _launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
+    files = list(_files(workspace))
+    if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
+        followed = _follow(workspace, files)
+        yield from _start(workspace, code(), followed) if followed else ()
         return
-    join = code()
-    seeing = Seeing(workspace, join)
+    workspace.gathered.store.close()  # another process opens it for itself
+    with processes.Workers(_within_limits, 1, _follow, workspace) as workers:
+        workers.give(files)
+        join = code()
+        ((_, followed),) = workers.finished()
+    if isinstance(followed, processes.Died):
+        followed = _follow(workspace, files)
+    _ = join.running(), join.sites.statements  # made once, not in every process
+    parts = [part for at in range(jobs) if (part := followed[at::jobs])]
+    found: dict[str, Launch] = {}
+    for part, made in processes.forked_rows(_within_limits, parts, jobs, _start, workspace, join):
+        for row, launch in zip(part, made, strict=True):
+            # What ends another process may end this one.
+            found[row[0]] = launch or next(_start(workspace, join, [row]))
+    yield from (found[path] for path, _ in followed)
+
+
+def _within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
+    """What a process of its own does: a task on some launch files, the last of what it is given."""
+    processes.begin_part(0, len(given[-1]) * _FILE_BYTES)
+    return list(task(*given))
+
+
+def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> Iterator[Launch]:
+    """What launch files start."""
+    sources, seeing = InWorkspace(workspace), Seeing(workspace, join)
     sights: dict[str, Sight] = {}
-    for path, launch, sources in followed:
-        if not launch.started:
-            continue
+    for path, launch in followed:
         running, missing = join.started(launch)
         graph = join.graph(launch=launch)
         starts = []
@@ -105,7 +142,7 @@ def _launches(workspace: Workspace, code: Callable[[], Join]) -> Iterator[Launch
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
             if program not in sights:
                 sights[program] = seeing.of(one)
-            starts.append(_start(join, launch, sources, one, program, sights[program]))
+            starts.append(_start_node(join, launch, sources, one, program, sights[program]))
         here = {id(one.instance.started) for one in running if one.instance is not None}
         others = [started for started in launch.started if id(started) not in here]
         elsewhere = {
@@ -116,19 +153,20 @@ def _launches(workspace: Workspace, code: Callable[[], Join]) -> Iterator[Launch
         yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)))
 
 
-def _followed(workspace: Workspace) -> list[tuple[str, Launched, InWorkspace]]:
-    """Each launch file that no other includes, followed."""
-    sources = InWorkspace(workspace)
-    found: list[tuple[str, Launched, InWorkspace]] = []
+def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
+    """Each launch file that no other includes and that starts something, followed. files: as _files() gives them."""
+    sources, changed = InWorkspace(workspace), ChangedFiles()
+    found: list[_Followed] = []
     included: set[str] = set()
     left = _MOST_ACTIONS
-    for package, path, inner in _files(workspace):
-        launch = follow(package, inner, sources, {}, generation=workspace.ros, most=min(MOST_ACTIONS, left))
+    for package, path, inner in files:
+        most = min(MOST_ACTIONS, left)
+        launch = follow(package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed)
         left = max(1, left - launch.actions)
-        found.append((path, launch, sources))
+        found.append((path, launch))
         own, *others = launch.files or (("", ""),)
         included.update(sources.place(*other) for other in others if other != own)
-    return [row for row in found if row[0] not in included]
+    return [row for row in found if row[1].started and row[0] not in included]
 
 
 def _files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
@@ -154,7 +192,7 @@ def is_launch(path: str) -> bool:
     return ending == "launch" or stem.endswith((".launch", "_launch")) or "launch" in folder.split("/")
 
 
-def _start(
+def _start_node(
     join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, sight: Sight
 ) -> LaunchedNode:  # fmt: skip
     instance = one.instance
@@ -183,8 +221,8 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
 
 def _parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
-    for use in join.calls.uses:
-        if use.row.does == "parameter" and id(use.fn) in one.functions:
+    for use in join.calls.doing("parameter"):
+        if id(use.fn) in one.functions:
             found.update(value.text for value in join.asked(use) if value.text)
     return found
 

@@ -35,8 +35,8 @@ class Loaded(NamedTuple):
 def loads(calls: Calls, functions: set[int], values: FlowValues, node: str) -> Iterator[Loaded]:
     """What a program loads. functions: id()s of those it runs; values: what expressions are worth in it; node: the full
     name of its node."""
-    for use in calls.uses:
-        if use.row.does != "load" or id(use.fn) not in functions:
+    for use in calls.doing("load"):
+        if id(use.fn) not in functions:
             continue
         for way in _ways(calls, use.fn, functions):
             inside = values.called(way)

@@ -425,8 +425,8 @@ class FlowValues:
     def declared(self) -> dict[str, list[FrameworkCall]]:
         """Declarations of parameters and reads with a default, by their literal names."""
         found: dict[str, list[FrameworkCall]] = {}
-        for use in self.calls.uses:
-            if use.row.does != "parameter" or self.calls.argument(use, use.row.default) is None:
+        for use in self.calls.doing("parameter"):
+            if self.calls.argument(use, use.row.default) is None:
                 continue
             name = self.calls.argument(use, use.row.topic)
             if name is not None and name.kind == "text":
@@ -437,8 +437,8 @@ class FlowValues:
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
         """Variables that a call fills with the value of a parameter."""
         found: dict[Variable, list[FrameworkCall]] = {}
-        for use in self.calls.uses:
-            if use.row.does == "parameter" and use.row.variable:
+        for use in self.calls.doing("parameter"):
+            if use.row.variable:
                 target = self.calls.argument(use, use.row.variable)
                 if target is not None and target.kind == "name" and not use.call.target:
                     found.setdefault(self.code.identity(target.text, use.fn), []).append(use)

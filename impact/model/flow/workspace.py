@@ -40,6 +40,8 @@ class WorkspaceFlow:
 
     def __init__(self, workspace: Workspace):
         self._workspace, self._store = workspace, workspace.gathered.store
+        # Processes to use.
+        self.jobs = 1
 
     @cached_property
     def code(self) -> Join:
@@ -49,7 +51,10 @@ class WorkspaceFlow:
     @cached_property
     def graph(self) -> Graph:
         """The message-flow graph of its code, without a launch file."""
-        return graph_of(self._workspace, self._store)
+        found = graph_of(self._workspace, self._store)
+        if "code" in self.__dict__:
+            _ = self.callers  # remembered beside the graph, so that they are not what needs the code joined anew
+        return found
 
     @cached_property
     def callers(self) -> Callers:
@@ -61,7 +66,7 @@ class WorkspaceFlow:
         """What its launch files start, see launches()."""
         from .launches import launches
 
-        return launches(self._workspace, lambda: self.code)
+        return launches(self._workspace, lambda: self.code, self.jobs)
 
 
 def flow_of(workspace: Workspace) -> WorkspaceFlow:
@@ -217,12 +222,11 @@ def graph_of(
     graph = code.graph(unread=_unread(code))
     if store is not None:
         store.remember("graph", encodable([(key, graph)]))
-        store.remember("callers", encodable([(key, callers(flow_of(workspace).code))]))
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
 def callers_of(workspace: Workspace, store) -> Callers:
-    """Who calls whom in a workspace. store: as for graph_of(), which remembers it too."""
+    """Who calls whom in a workspace. store: as for graph_of()."""
     key = _key(workspace)
     known = store.memo("callers", key) if store is not None else None
     if known is not None:

@@ -67,17 +67,27 @@ class Rewrite(NamedTuple):
     is_text: bool
 
 
+class ChangedFiles:
+    """What becomes of the entries of parameter files, by the id() of the entries that it is made from: the same in all
+    launches of the same sources. rewritten: those entries and what a rewrite makes of them; plain: those entries, and
+    whether none of them holds a substitution."""
+
+    def __init__(self) -> None:
+        self.rewritten: dict[tuple[int, Rewrite], tuple[tuple[ParameterEntry, ...], tuple[ParameterEntry, ...]]] = {}
+        self.plain: dict[int, tuple[tuple[ParameterEntry, ...], bool]] = {}
+
+
 class Filling:
     """Where a launch stands: the file it reads, and what holds there. package and path: of that file."""
 
-    def __init__(self, sources: LaunchSources, scope: ActionScope, generation: int):
+    def __init__(self, sources: LaunchSources, scope: ActionScope, generation: int, changed: ChangedFiles):
         self.sources = sources
+        self.changed = changed
         self.scope = scope
         self.generation = generation
         self.package = ""
         self.path = ""
         self.rewrites: dict[str, Rewrite] = {}
-        self._changed: dict[tuple[int, Rewrite], tuple[tuple[ParameterEntry, ...], tuple[ParameterEntry, ...]]] = {}
         self.unresolved: list[UnresolvedPart] = []
 
     def at(self, line: int) -> ShareLine:
@@ -95,10 +105,15 @@ class Filling:
             self.miss(line, f"{what} `{text.shown}`", *text.reasons)
         return text
 
-    def substituted(self, entry: ParameterEntry) -> ParameterEntry:
-        """An entry whose keys or values hold substitutions, filled in where that can be done."""
-        if not isinstance(entry.value, list | dict) and "$(" not in f"{entry.path}{entry.value}":
-            return entry
+    def substituted(self, entries: tuple[ParameterEntry, ...]) -> tuple[ParameterEntry, ...]:
+        """Entries whose keys or values may hold substitutions, filled in where that can be done."""
+        known = self.changed.plain.get(id(entries))
+        if known is None:
+            plain = not any("$(" in f"{entry.path}{entry.value}" for entry in entries)
+            known = self.changed.plain[id(entries)] = entries, plain
+        return entries if known[1] else tuple(map(self._substituted, entries))
+
+    def _substituted(self, entry: ParameterEntry) -> ParameterEntry:
         path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
         return ParameterEntry(path, self.filled_value(entry.value), entry.line)
 
@@ -139,9 +154,9 @@ class Filling:
     def _rewritten(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
         """The same for all nodes that are given one file with one rewrite."""
         key = id(entries), rewrite
-        known = self._changed.get(key)
+        known = self.changed.rewritten.get(key)
         if known is None:
-            known = self._changed[key] = entries, _rewritten(entries, rewrite)
+            known = self.changed.rewritten[key] = entries, _rewritten(entries, rewrite)
         return known[1]
 
     def place(self, path: str) -> tuple[str, str] | None:

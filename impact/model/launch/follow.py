@@ -17,7 +17,7 @@ from ...facts.launch.actions import Action, ActionCondition, LaunchFile, literal
 from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
-from .fill import ActionScope, Filling
+from .fill import ActionScope, ChangedFiles, Filling
 from .result import (
     LaunchArgument,
     Launched,
@@ -44,15 +44,16 @@ def follow(
     environment: Mapping[str, str] | None = None,
     generation: int = 0,
     most: int = MOST_ACTIONS,
+    changed: ChangedFiles | None = None,
 ) -> Launched:
     """All that the launch file `$(find package)/path` starts.
 
     arguments: as given on the command line. environment: variables that are known. generation: of the workspace, for
-    files that could be of either. most: how many actions are done.
+    files that could be of either. most: how many actions are done. changed: shared by launches of the same sources.
     """
     given = {name: known(value) for name, value in (arguments or {}).items()}
     variables = {name: known(value) for name, value in (environment or {}).items()}
-    launch = _Launch(sources, given, variables, generation, most)
+    launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles())
     launch.top(package, posixpath.normpath(path).lstrip("/"))
     return Launched(
         tuple(launch.started),
@@ -75,8 +76,9 @@ class _Launch(Filling):
         environment: dict[str, LaunchText],
         generation: int,
         most: int,
+        changed: ChangedFiles,
     ):
-        super().__init__(sources, ActionScope(arguments, environment, 0), generation or 2)
+        super().__init__(sources, ActionScope(arguments, environment, 0), generation or 2, changed)
         self.chain: list[ShareLine] = []
         self.open: list[str] = []
         self.assumed: list[str] = []
@@ -362,7 +364,7 @@ class _Launch(Filling):
             return SettingFile(file, (), at, conditions)
         entries = self.entries(file.value, action.line)
         if entries is not None and plain(action.get("substitute")) is not None:
-            entries = tuple(self.substituted(entry) for entry in entries)
+            entries = self.substituted(entries)
         below = [self.text(key).value for key in action.all("below")]
         name = action.get("name")
         if not below and name is None:
@@ -428,10 +430,9 @@ class _Launch(Filling):
             # What is filled in may be any piece of YAML, so that it comes before reading.
             text = self.text(content or literal(""))
             entries, assumed, fill = parameters(text.shown).entries, text.assumed, False
-        for entry in entries or ():
-            filled = self.substituted(entry) if fill else entry
-            key = "/".join(part.strip("/") for part in (full.value or "/", *filled.path) if part.strip("/"))
-            self.put(f"/{key}", filled.value, known(str(filled.value), assumed), action.line)
+        for entry in self.substituted(entries or ()) if fill else entries or ():
+            key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
+            self.put(f"/{key}", entry.value, known(str(entry.value), assumed), action.line)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
