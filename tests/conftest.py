@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import os
 import shutil
 import signal
 import struct
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +24,25 @@ hypothesis.settings.load_profile("untimed")
 # A shell that starts the tests in the background has them ignore Ctrl-C, and all that they start would ignore it too.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+_FIRST = (
+    "hostile/test_attacks.py", "debian/", "test_processes.py", "test_damaged_cache.py", "test_report_cache.py",
+    "test_signals.py", "test_gather.py", "test_surface_command.py", "corpus/test_study.py", "packaging/", "test_",
+    "rules/test_rules.py", "rules/test_silence.py", "corpus/", "classifier/",
+)  # fmt: skip
+"""Beginnings of the paths of tests that come first, in this order: those that start processes, while the process of the
+tests is small and forks fast; then those that take long, so that with -n all processes end with short ones."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Sorts files by _FIRST; within a file nothing moves."""
+
+    def find_rank(item: pytest.Item) -> int:
+        path = item.path.relative_to(Path(__file__).parent).as_posix()
+        return next((rank for rank, start in enumerate(_FIRST) if path.startswith(start)), len(_FIRST))
+
+    items.sort(key=find_rank)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
@@ -149,10 +169,24 @@ def say(capfd, cache, monkeypatch) -> Callable[..., Said]:
     return run
 
 
+@pytest.fixture(scope="session", autouse=True)
+def commands_built_once() -> Iterator[None]:
+    """Typer builds every command anew each time one is called, which takes 40 ms: more than many a command."""
+    import typer.main
+    import typer.testing
+
+    build = functools.cache(typer.main.get_command)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(typer.main, "get_command", build)
+        patch.setattr(typer.testing, "_get_command", build)
+        yield
+
+
 _IN_ONE_PROCESS = {
     "rules", "model", "report", "targets", "facts", "flow", "test_bad_input.py", "test_base.py", "test_check.py",
-    "test_cli.py", "test_findings.py", "test_fix.py", "test_guarded.py", "test_impact_command.py", "test_installed.py",
-    "test_one_change.py", "test_upgrade.py", "test_why.py",
+    "test_cli.py", "test_env_diff.py", "test_findings.py", "test_fix.py", "test_graph.py", "test_guarded.py",
+    "test_impact_command.py", "test_installed.py", "test_new_rule.py", "test_one_change.py", "test_report_cache.py",
+    "test_surface_command.py", "test_upgrade.py", "test_why.py",
 }  # fmt: skip
 """Folders and files of tests that look at what is found, not at how it is divided among processes; that has tests of
 its own (test_processes.py, test_gather.py, test_signals.py, test_same_every_time.py, hostile/)."""

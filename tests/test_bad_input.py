@@ -11,8 +11,9 @@ import sqlite3
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import pygit2
 import pytest
@@ -37,16 +38,18 @@ HEALTHY = {
     ),
 }
 FOUND = "error[library-version]"
+Content: TypeAlias = "str | bytes | Callable[[], bytes]"
 BAD = {"src/bad/package.xml": MANIFEST.format(name="bad", depend="rclcpp"), "src/bad/CMakeLists.txt": CMAKE}
 BOMB = "<!DOCTYPE x [<!ENTITY a '" + "A" * 1000 + "'>" + "".join(
     f"<!ENTITY {chr(98 + n)} '{f'&{chr(97 + n)};' * 10}'>" for n in range(9)
 ) + "]>"  # fmt: skip
 
 
-def write(root: Path, files: dict[str, str | bytes]) -> Path:
+def write(root: Path, files: Mapping[str, Content]) -> Path:
     for name, content in files.items():
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
+        content = content() if callable(content) else content
         path.write_bytes(content.encode("utf-8", "surrogateescape") if isinstance(content, str) else content)
     return root
 
@@ -74,7 +77,7 @@ class Bad(NamedTuple):
     """name; files that go over the package `bad`; words that the report has to hold."""
 
     name: str
-    files: dict[str, str | bytes]
+    files: Mapping[str, Content]
     words: tuple[str, ...] = ()
 
 
@@ -244,7 +247,7 @@ FILES = [
         {"src/bad/src/a.cpp": "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 5\n"},
         ("LFS",),
     ),
-    Bad("50 MB of generated code", {"src/bad/src/big.cpp": b"int a;\n" * 7_500_000}, ("big.cpp", "MB")),
+    Bad("50 MB of generated code", {"src/bad/src/big.cpp": lambda: b"int a;\n" * 7_500_000}, ("big.cpp", "MB")),
 ]
 
 
@@ -474,7 +477,7 @@ class Asked(NamedTuple):
     """Arguments beside the workspace, files of the workspace, words of the answer. `WS` stands for the workspace."""
 
     arguments: tuple[str, ...]
-    files: dict[str, str | bytes]
+    files: Mapping[str, Content]
     words: tuple[str, ...]
 
 

@@ -60,14 +60,18 @@ def filled(workspace, tmp_path_factory) -> tuple[Path, int, dict]:
 
 
 def test_any_change_of_any_file_gives_the_same_answer(workspace, filled, say, tmp_path, monkeypatch):
-    """In this process, which is many times faster than one for each change."""
+    """In this process, which is many times faster than one for each change; every fourth change meets processes that
+    are forked."""
+    from rosimpact.edges import processes
     from rosimpact.impact.targets import snapshot
     from rosimpact.impact.targets.providers import providers
 
     cache, status, expected = filled
     chance = random.Random(15)
     names = sorted(path.name for path in cache.iterdir())
+    may_fork = processes.may_fork
     for turn in range(40):
+        monkeypatch.setattr(processes, "may_fork", may_fork if turn % 4 == 0 else lambda: False)
         damaged = tmp_path / f"{turn}"
         shutil.copytree(cache, damaged)
         file = damaged / ("facts.sqlite" if turn % 2 else chance.choice(names))

@@ -174,22 +174,25 @@ def symbols(count: int, length: int) -> bytes:
 STRINGS = section(3, 256, 100)
 HOSTILE = {
     "2^31 sections": head() + section(size=2**31, link=0) + section() * 10,
-    "a dynamic section without an end": head(segments=1)
+    "a dynamic section without an end": lambda: head(segments=1)
     + struct.pack("<IIQQQQQQ", 2, 4, 120, 0, 0, 2**40, 2**40, 8)
     + struct.pack("<QQ", 1, 5) * 400_000,
     "needed versions that lead back": head(3, names=2) + section(link=0) + section(0x6FFFFFFE, info=2**31) + STRINGS
     + struct.pack("<HHIII", 1, 65535, 0, 0, 0) + bytes(1000),
     "defined versions that lead back": head(3, names=2) + section(link=0) + section(0x6FFFFFFD, info=2**31) + STRINGS
     + struct.pack("<HHHHIII", 1, 0, 1, 65535, 0, 0, 0) + bytes(1000),
-    "names that overlap": symbols(1000, 1_000_000),
+    "names that overlap": lambda: symbols(1000, 1_000_000),
     "2^31 symbols": head(3, names=2) + section() + section(11, size=24 * 2**31) + STRINGS + bytes(1000),
     "a table behind the end": head(3, names=2) + section() + section(11, 2**62, 24) + STRINGS + bytes(1000),
-    "names without an end": head(3, names=2) + section() + section(7) + section(3, 256, 2**40) + b"x" * 70_000_000,
+    "names without an end": lambda: (
+        head(3, names=2) + section() + section(7) + section(3, 256, 2**40) + b"x" * 70_000_000
+    ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("data", HOSTILE.values(), ids=HOSTILE)
 def test_what_a_file_claims_costs_a_second_at_most(data):
+    data = data() if callable(data) else data
     began = time.process_time()
     found = read(data)
     elf.defined(data)

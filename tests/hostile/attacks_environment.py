@@ -609,6 +609,3 @@ def short(place: Place, ended: Ended) -> list[str]:
     """What fails is said in a line or two."""
     lines = [line for line in ended.err.decode("utf-8", "replace").splitlines() if line.strip()]
     return [f"{len(lines)} lines on standard error"] if ended.status == 2 and len(lines) > 6 else []
-
-
-ATTACKS = rows()

@@ -67,6 +67,3 @@ def all_spoiled(place: Place) -> None:
     for kind in KINDS:
         if not kind.setting:
             write(place.ws, {kind.path: SPOILED["of random bytes"](b"")})
-
-
-ATTACKS = rows()

@@ -576,6 +576,3 @@ def said_or_done(place: Place, ended) -> list[str]:
     if ended.status == 2 and not lines and not out:
         return ["fails without a word"]
     return []
-
-
-ATTACKS = rows()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pygit2
 
 from .attacks_bombs import commit_blob
-from .harness import COMMANDS, FOUND, NEEDS_GIT, STATUS, Attack, Place, cmake, commit, link, manifest, write
+from .harness import COMMANDS, NEEDS_GIT, STATUS, Attack, Place, cmake, commit, link, manifest, write
 from .kinds import KINDS, Kind
 
 GROUP = "links"
@@ -598,7 +598,3 @@ def follows(command: str) -> Attack:
         git=command in NEEDS_GIT,
         words=() if command == "impact" else ("followed",) if command != "why" else ("elsewhere",),
     )
-
-
-ATTACKS = rows()
-assert FOUND

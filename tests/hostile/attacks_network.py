@@ -144,6 +144,3 @@ def remote(place: Place) -> None:
         config.read_text()
         + f'[remote "origin"]\n\turl = {place.url}/x.git\n\tfetch = +refs/heads/*:refs/remotes/origin/*\n'
     )
-
-
-ATTACKS = rows()

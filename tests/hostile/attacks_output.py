@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import pygit2
 
-from .harness import COMMANDS, FORMATS, NEEDS_GIT, NODE, STATUS, Attack, Place, cmake, commit, manifest, write
+from .harness import COMMANDS, FORMATS, NEEDS_GIT, NODE, STATUS, Attack, Place, cmake, manifest, write
 from .kinds import KINDS
 
 GROUP = "output"
@@ -1077,7 +1077,3 @@ def libraries(place: Place) -> None:
         place.ws,
         {"install/lib/libbad.so": module.elf_bytes("EM_X86_64", ascii_needed, "evil\x1b[2J", "/evil\n::error::evil")},
     )
-
-
-ATTACKS = rows()
-assert commit

@@ -288,6 +288,3 @@ def all_pipes(place: Place) -> None:
     for kind in KINDS:
         if not kind.setting and kind.path != "src/bad/package.xml":
             fifo(place.ws / kind.path)
-
-
-ATTACKS = rows()

@@ -355,6 +355,3 @@ def old_or_whole(place: Place, ended: Ended) -> list[str]:
         if data == "old\n" or ("asks for OpenCV 9" in data and len(data) > 300)
         else [f"the report is cut: {len(data)} bytes"]
     )
-
-
-ATTACKS = rows()

@@ -19,7 +19,7 @@ def attacks() -> tuple[Attack, ...]:
     """Every row of the modules attacks_*.py; their names differ."""
     found: list[Attack] = []
     for path in sorted(Path(__file__).parent.glob("attacks_*.py")):
-        found += importlib.import_module(f".{path.stem}", __package__).ATTACKS
+        found += importlib.import_module(f".{path.stem}", __package__).rows()
     twice = [name for name, count in Counter(attack.name for attack in found).items() if count > 1]
     assert not twice, twice
     return tuple(found)

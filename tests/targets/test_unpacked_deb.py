@@ -1,5 +1,6 @@
 """Debian packages as they are downloaded: what is in them comes out, and what they claim costs little."""
 
+import functools
 import gzip
 import io
 import lzma
@@ -18,7 +19,7 @@ from rosimpact.databuild.surface.unpacked_deb import DebError, DebFile, members
 from rosimpact.edges.limits import Limits
 
 PACKERS = {
-    ".xz": lzma.compress,
+    ".xz": functools.partial(lzma.compress, preset=0),
     ".gz": gzip.compress,
     ".zst": zstandard.ZstdCompressor().compress,
     "": bytes,

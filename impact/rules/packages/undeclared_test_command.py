@@ -66,8 +66,8 @@ def _find_owners(view: TargetView) -> dict[str, str]:
     known = view.worked_out.get(("test commands", ""))
     if known is None:
         known = view.worked_out["test commands", ""] = {}
-        for name in sorted(view.target.released_names()):
-            history = view.offers.history(name) if "ament_cmake" in name else None
+        for name in sorted(name for name in view.target.released_names() if "ament_cmake" in name):
+            history = view.offers.history(name)
             needed = view.target.dependencies(name) or ()
             if history is None or not any(d.name == _TESTS and d.kind != "test" for d in needed):
                 continue
