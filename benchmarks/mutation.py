@@ -15,8 +15,8 @@ fails:
    former have made; for a place that is executed on import, those that call a function of its module
 2. the other tests of these files; for a place that is executed on import, of the files that import its module
 
-each of them the shortest first, as many as the budget (seconds of processor time) allows. A test that fails without
-the change too does not count. Outcomes, a line of FILE each:
+each of them the shortest first, as many as the budget (seconds of processor time; a quarter of it for the second group)
+allows. A test that fails without the change too does not count. Outcomes, a line of FILE each:
 
     killed        a test failed
     timed out     the tests took far more processor time than without the change
@@ -31,6 +31,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import itertools
 import json
 import math
 import os
@@ -320,14 +321,14 @@ def _parameters(test: str) -> str:
 
 
 class Outcome(NamedTuple):
-    """status: `passed`, `failed` or `timed out`. test: the one that failed; "" if none did, or none could start."""
+    """status: `passed`, `failed` or `timed out`. failed: tests; none if no test could start."""
 
     status: str
-    test: str = ""
+    failed: list[str]
 
 
-def run_tests(tree: Tree, tests: Sequence[str], seconds: float) -> Outcome:
-    """Runs tests until one fails. seconds: what they take without a change."""
+def run_tests(tree: Tree, tests: Sequence[str], seconds: float, *options: str) -> Outcome:
+    """Runs tests with options of pytest. seconds: what they take without a change."""
     scratch = tree.files.parent
     chosen, finished, temporary = (scratch / name for name in ("chosen.json", "finished", "temporary"))
     chosen.write_text(json.dumps(tests), encoding="utf-8")
@@ -338,7 +339,7 @@ def run_tests(tree: Tree, tests: Sequence[str], seconds: float) -> Outcome:
         resource.setrlimit(resource.RLIMIT_CPU, (allowed, allowed))
         resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
 
-    command = [*_PYTEST, "-x", "-p", "no:xdist", f"--basetemp={temporary}", *dict.fromkeys(map(_file, tests))]
+    command = [*_PYTEST, *options, "-p", "no:xdist", f"--basetemp={temporary}", *dict.fromkeys(map(_file, tests))]
     process = subprocess.Popen(
         command, cwd=tree.files, env=_environment(tree, finished, chosen), stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL, start_new_session=True, preexec_fn=set_limits,
@@ -348,17 +349,17 @@ def run_tests(tree: Tree, tests: Sequence[str], seconds: float) -> Outcome:
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        return Outcome("timed out")
+        return Outcome("timed out", [])
     finally:
         shutil.rmtree(tree.files / ".hypothesis", ignore_errors=True)
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
-        return Outcome("timed out")
+        return Outcome("timed out", [])
     failed = [test for test, _, passed in _read_finished(finished) if not passed]
-    return Outcome("failed", failed[0] if failed else "") if status else Outcome("passed")
+    return Outcome("passed" if status in (0, 5) else "failed", failed)  # 5: no tests
 
 
-def choose_tests(root: Path, sample: Sample, number: int) -> list[str]:
-    """Tests that may notice a mutant, in the order in which the budget takes them."""
+def choose_tests(root: Path, sample: Sample, number: int) -> tuple[list[str], list[str]]:
+    """Tests that may notice a mutant: those that execute it or are like them, and others. The shortest first."""
     found = set(sample.tests.get(number, ()))
     files = {_file(test) for test in found}
     if number in sample.on_import or found == {""}:
@@ -369,7 +370,8 @@ def choose_tests(root: Path, sample: Sample, number: int) -> list[str]:
         for test, seconds in sample.seconds.items()
         if _file(test) in files
     ]
-    return [test for *_, test in sorted(ranked)]
+    ranked.sort()
+    return [test for other, _, test in ranked if not other], [test for other, _, test in ranked if other]
 
 
 def find_importing(root: Path, path: str) -> set[str]:
@@ -387,55 +389,44 @@ def find_importing(root: Path, path: str) -> set[str]:
     return {file.relative_to(root).as_posix() for file in files} | {"tests/rules/test_rules.py"}
 
 
-def take_affordable(tests: Iterable[str], seconds: Mapping[str, float], budget: float) -> list[str]:
-    """The first tests that take no more than the budget together, those of a file in a row, quick files first."""
+def take_affordable(tests: Sequence[str], seconds: Mapping[str, float], budget: float) -> list[str]:
+    """The first tests that take no more than the budget together, at least one."""
+    taken = itertools.accumulate(seconds[test] for test in tests)
+    return [test for at, (test, so_far) in enumerate(zip(tests, taken, strict=True)) if so_far <= budget or not at]
+
+
+def order_tests(tests: Iterable[str], seconds: Mapping[str, float]) -> list[str]:
+    """Those of a file in a row; quick files and quick tests first."""
     by_file: dict[str, list[str]] = defaultdict(list)
-    left = budget
     for test in tests:
-        left -= seconds[test]
-        if left < 0 and by_file:
-            break
         by_file[_file(test)].append(test)
     rows = sorted(by_file.values(), key=lambda row: sum(seconds[test] for test in row))
     return [test for row in rows for test in sorted(row, key=lambda test: seconds[test])]
 
 
-def try_mutant(
-    mutant: Mutant,
-    tests: Sequence[str],
-    seconds: Mapping[str, float],
-    budget: float,
-    tree: Tree,
-    sound: dict[str, bool],
-) -> str:
+def try_mutant(sample: Sample, number: int, tree: Tree, budget: float, unsound: Collection[str]) -> str:
     """Makes a change in a tree, runs the tests that the budget allows, takes the change back, and tells the outcome.
-    sound: whether tests pass without a change, as far as that is known."""
+    unsound: tests that fail without a change."""
+    mutant, seconds = sample.mutants[number], sample.seconds
+    groups = [[test for test in group if test not in unsound] for group in choose_tests(tree.files, sample, number)]
+    afforded = [take_affordable(group, seconds, part) for group, part in zip(groups, (budget, budget / 4), strict=True)]
+    chosen = order_tests(itertools.chain(*afforded), seconds)
+    if not chosen:
+        return "not reached"
     file = tree.files / mutant.path
     original, status = file.read_text(encoding="utf-8"), file.stat()
-    changed = mutant.change(original)
-    assert changed is not None
-    while True:
-        usable = [test for test in tests if sound.get(test, True)]
-        if not usable:
-            return "not reached"
-        chosen = take_affordable(usable, seconds, budget)
-        taken = sum(seconds[test] for test in chosen)
-        try:
-            file.write_text(changed, encoding="utf-8")
-            outcome = run_tests(tree, chosen, taken)
-        finally:
-            file.write_text(original, encoding="utf-8")
-            os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))  # its compiled form is valid again
-        if outcome.status == "passed":
-            return "survived " + (f"({len(chosen)} tests)" if len(chosen) == len(usable) else
-                                  f"(first {len(chosen)} of {len(usable)} tests)")  # fmt: skip
-        if outcome.status == "timed out":
-            return "timed out"
-        test = outcome.test or chosen[0]
-        if test not in sound:
-            sound[test] = run_tests(tree, [test], seconds[test]).status == "passed"
-        if sound[test]:
-            return f"killed ({test})" if outcome.test else "killed (no test starts)"
+    try:
+        file.write_text(mutant.change(original) or "", encoding="utf-8")
+        outcome = run_tests(tree, chosen, sum(seconds[test] for test in chosen), "-x")
+    finally:
+        file.write_text(original, encoding="utf-8")
+        os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))  # its compiled form is valid again
+    if outcome.status == "failed":
+        return f"killed ({outcome.failed[0]})" if outcome.failed else f"killed (before {chosen[0]})"
+    if outcome.status == "timed out":
+        return outcome.status
+    known = sum(map(len, groups))
+    return f"survived ({f'first {len(chosen)} of ' if len(chosen) < known else ''}{known} tests)"
 
 
 # The whole
@@ -471,6 +462,27 @@ def read_results(file: Path) -> dict[int, str]:
     return {int(line.split("\t")[0]): line.split("\t")[2] for line in lines}
 
 
+def find_killers(outcome: str) -> set[str]:
+    """The test, if any, that failed or could not start."""
+    found = re.match(r"killed \((?:before )?(.*)\)$", outcome)
+    return {found[1]} if found else set()
+
+
+def find_unsound(tree: Tree, outcomes: Mapping[int, str], seconds: Mapping[str, float]) -> set[str]:
+    """The tests among those that noticed changes that fail in a tree without a change."""
+    killers = order_tests(set[str]().union(*map(find_killers, outcomes.values())), seconds)
+    outcome = run_tests(tree, killers, sum(seconds[test] for test in killers)) if killers else Outcome("passed", [])
+    if outcome.status != "passed" and not outcome.failed:
+        raise SystemExit(f"{tree.files}: tests do not run without a change either")
+    return set(outcome.failed)
+
+
+def drop_results(file: Path, tests: set[str]) -> None:
+    """Forgets the changes that were noticed by tests that are not sound."""
+    lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+    file.write_text("".join(line for line in lines if not find_killers(line.split("\t")[2]) & tests), encoding="utf-8")
+
+
 def summarize(rev: str, outcomes: Collection[str]) -> str:
     counts = Counter(re.match(r"[a-z ]*[a-z]", outcome)[0] for outcome in outcomes)  # type: ignore[index]
     noticed, tried = counts["killed"] + counts["timed out"], len(outcomes)
@@ -495,22 +507,23 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="mutation-", ignore_cleanup_errors=True) as folder:
         scratch = Path(folder)
         trees: SimpleQueue[Tree] = SimpleQueue()
-        for at in range(arguments.jobs):
-            trees.put(make_tree(scratch / str(at), rev))
+        first, *others = (make_tree(scratch / str(at), rev) for at in range(arguments.jobs))
+        for tree in (first, *others):
+            trees.put(tree)
         kept = results.with_name(results.name + ".reached.json")
         if not kept.exists():
-            mutants = draw_mutants(scratch / "0/tree", arguments.folders, arguments.number, arguments.seed)
+            mutants = draw_mutants(first.files, arguments.folders, arguments.number, arguments.seed)
             kept.write_text(json.dumps(record_reached(rev, mutants, scratch, arguments.jobs)), encoding="utf-8")
         mutants, seconds, tests, on_import = json.loads(kept.read_text(encoding="utf-8"))
         mutants = [Mutant(*fields) for fields in mutants]
         sample = Sample(mutants, seconds, {int(number): found for number, found in tests.items()}, on_import)
-        sound: dict[str, bool] = {}
+        asked = range(len(mutants))[: arguments.first]
+        unsound: set[str] = set()
 
         def try_numbered(number: int) -> None:
             tree, start = trees.get(), time.monotonic()
             try:
-                tests = choose_tests(tree.files, sample, number)
-                outcome = try_mutant(mutants[number], tests, seconds, arguments.budget, tree, sound)
+                outcome = try_mutant(sample, number, tree, arguments.budget, unsound)
             finally:
                 trees.put(tree)
             line = f"{number}\t{mutants[number]}\t{outcome}\t{time.monotonic() - start:.0f} s"
@@ -518,11 +531,15 @@ def main() -> None:
                 file.write(line + "\n")
             print(line, flush=True)
 
-        done = read_results(results)
-        asked = range(len(mutants))[: arguments.first]
-        with ThreadPoolExecutor(arguments.jobs) as pool:
-            for _ in pool.map(try_numbered, [number for number in asked if number not in done]):
-                pass
+        while True:
+            done = read_results(results)
+            with ThreadPoolExecutor(arguments.jobs) as pool:
+                list(pool.map(try_numbered, [number for number in asked if number not in done]))
+            failing = find_unsound(first, read_results(results), seconds)
+            if not failing:
+                break
+            unsound |= failing
+            drop_results(results, failing)
     done = read_results(results)
     print(summarize(rev, [done[number] for number in asked]))
 
