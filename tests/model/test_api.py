@@ -283,6 +283,22 @@ def test_the_type_of_a_parameter(parameter, type_):
     assert [parameter_type(one) for one in function.parameters] == [type_]
 
 
+@pytest.mark.parametrize(
+    ("text", "names", "members"),
+    [
+        ("enum Mode { A };", [("type", "", "Mode"), ("enumerator", "", "A")], []),
+        ("enum class Mode { A };", [("type", "", "Mode"), ("enumerator", "Mode", "A")], []),
+        ("class C { enum Mode { A }; };", [], [("type", "C", "Mode"), ("enumerator", "C", "A")]),
+        ("class C { enum struct Mode { A } m; };", [("enumerator", "C::Mode", "A")],
+         [("type", "C", "Mode"), ("variable", "C", "m")]),
+    ],
+)  # fmt: skip
+def test_enumerators_stand_beside_an_enum_or_in_it(text, names, members):
+    file = CppCode(text.encode()).file
+    inside = [one for cls in file.classes for those in cls.members.values() for one in those]
+    assert [[(one.kind, one.scope, one.name) for one in those] for those in (file.names, inside)] == [names, members]
+
+
 DRILL = "class Drill {{ public: void spin(int a{0}); }};"
 BOX = """class Box {{ public: void close({0}); std::shared_ptr<Drill> drill() const;
 std::shared_ptr<const Drill> drill(); Drill first; typedef Drill Any; template<class T> Drill pick();
