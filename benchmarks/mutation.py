@@ -89,9 +89,10 @@ class Mutant(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """Mutants, and what a run of the whole suite records. seconds: processor time of each test. tests: by the number of
-    a mutant the tests that execute its place, for a place that is executed on import those that call a function of its
-    module; "" among them if it was executed outside of tests. on_import: the numbers of the latter mutants."""
+    """Mutants, and what a run of the whole suite records. seconds: processor time of each test that passes. tests: by
+    the number of a mutant the tests that execute its place, for a place that is executed on import those that call a
+    function of its module; "" among them if it was executed outside of tests. on_import: the numbers of the latter
+    mutants."""
 
     mutants: list[Mutant]
     seconds: dict[str, float]
@@ -255,7 +256,7 @@ def record_reached(rev: str, mutants: list[Mutant], scratch: Path, jobs: int) ->
     command = [*_PYTEST, "-n", str(jobs), "--dist=loadfile", f"--basetemp={scratch}/temporary"]
     with open(scratch / "suite.log", "wb") as log:
         subprocess.run(command, cwd=tree.files, env=_environment(tree, finished), stdout=log, stderr=log, check=False)
-    seconds = {test: taken for test, taken, _ in _read_finished(finished)}
+    seconds = {test: taken for test, taken, passed in _read_finished(finished) if passed}
     tests: dict[int, dict[str, None]] = defaultdict(dict)
     for file in sorted(probes.iterdir()):
         for line in file.read_text(encoding="utf-8").splitlines():
@@ -264,7 +265,7 @@ def record_reached(rev: str, mutants: list[Mutant], scratch: Path, jobs: int) ->
             # What a fixture does first may serve all tests of its file.
             names = [other for other in seconds if _file(other) == _file(name)] if phase == "(setup)" else [name]
             for number in map(int, numbers.split()):
-                tests[number].update(dict.fromkeys(names))
+                tests[number].update(dict.fromkeys(each for each in names if not each or each in seconds))
     return Sample(mutants, seconds, {number: sorted(found) for number, found in tests.items()}, on_import)
 
 
