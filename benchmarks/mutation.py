@@ -16,7 +16,8 @@ fails:
 2. the other tests of these files; for a place that is executed on import, of the files that import its module
 
 each of them the shortest first, as many as the budget (seconds of processor time; a quarter of it for the second group)
-allows. A test that fails without the change too does not count. Outcomes, a line of FILE each:
+allows. They may take longer than in the whole suite, where others have filled caches before: after twice the budget no
+further one begins. A test that fails without the change too does not count. Outcomes, a line of FILE each:
 
     killed        a test failed
     timed out     the tests took far more processor time than without the change
@@ -275,10 +276,15 @@ _PYTEST = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p",
 _PYTEST += ["-o", "addopts="]
 
 
-def _environment(tree: Tree, finished: Path, chosen: Path | None = None) -> dict[str, str]:
+def _environment(tree: Tree, finished: Path, chosen: Path | None = None, longest: float = math.inf) -> dict[str, str]:
     """For pytest with this module as its plugin."""
-    told = {"PYTHONPATH": str(tree.packages), "MUTATION_FINISHED": str(finished), "MUTATION_CHOSEN": str(chosen or "")}
-    return {**os.environ, **told}
+    return {
+        **os.environ,
+        "PYTHONPATH": str(tree.packages),
+        "MUTATION_FINISHED": str(finished),
+        "MUTATION_CHOSEN": str(chosen or ""),
+        "MUTATION_LONGEST": str(longest),
+    }
 
 
 def pytest_collection_modifyitems(items: list[Any]) -> None:
@@ -294,6 +300,7 @@ def pytest_runtest_logstart() -> None:
 
 
 _started = 0.0
+_taken = 0.0
 _failed: set[str] = set()
 
 
@@ -303,8 +310,12 @@ def pytest_runtest_makereport(item: Any, call: Any) -> None:
     if call.excinfo is not None and not skipped:
         _failed.add(item.nodeid)
     if call.when == "teardown":
-        taken = round(sum(os.times()[:4]) - _started, 3)
-        line = json.dumps([item.nodeid, taken, item.nodeid not in _failed])
+        global _taken
+        taken = sum(os.times()[:4]) - _started
+        _taken += taken
+        if _taken > float(os.environ["MUTATION_LONGEST"]):
+            item.session.shouldstop = "the tests have had their time"
+        line = json.dumps([item.nodeid, round(taken, 3), item.nodeid not in _failed])
         with open(os.environ["MUTATION_FINISHED"], "a", encoding="utf-8") as file:
             file.write(line + "\n")
 
@@ -322,19 +333,21 @@ def _parameters(test: str) -> str:
 
 
 class Outcome(NamedTuple):
-    """status: `passed`, `failed` or `timed out`. failed: tests; none if no test could start."""
+    """status: `passed`, `failed` or `timed out`. run: how many tests were run. failed: those that failed; none if no
+    test could start."""
 
     status: str
-    failed: list[str]
+    run: int = 0
+    failed: Sequence[str] = ()
 
 
-def run_tests(tree: Tree, tests: Sequence[str], seconds: float, *options: str) -> Outcome:
-    """Runs tests with options of pytest. seconds: what they take without a change."""
+def run_tests(tree: Tree, tests: Sequence[str], longest: float, *options: str) -> Outcome:
+    """Runs tests with options of pytest. longest: after how many seconds of processor time no further one begins."""
     scratch = tree.files.parent
     chosen, finished, temporary = (scratch / name for name in ("chosen.json", "finished", "temporary"))
     chosen.write_text(json.dumps(tests), encoding="utf-8")
     finished.unlink(missing_ok=True)
-    allowed = int(120 + 4 * seconds)
+    allowed = int(120 + 2 * min(longest, 300))
 
     def set_limits() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (allowed, allowed))
@@ -342,7 +355,7 @@ def run_tests(tree: Tree, tests: Sequence[str], seconds: float, *options: str) -
 
     command = [*_PYTEST, *options, "-p", "no:xdist", f"--basetemp={temporary}", *dict.fromkeys(map(_file, tests))]
     process = subprocess.Popen(
-        command, cwd=tree.files, env=_environment(tree, finished, chosen), stdout=subprocess.DEVNULL,
+        command, cwd=tree.files, env=_environment(tree, finished, chosen, longest), stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL, start_new_session=True, preexec_fn=set_limits,
     )  # fmt: skip
     try:
@@ -350,13 +363,15 @@ def run_tests(tree: Tree, tests: Sequence[str], seconds: float, *options: str) -
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        return Outcome("timed out", [])
+        return Outcome("timed out")
     finally:
         shutil.rmtree(tree.files / ".hypothesis", ignore_errors=True)
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
-        return Outcome("timed out", [])
-    failed = [test for test, _, passed in _read_finished(finished) if not passed]
-    return Outcome("passed" if status in (0, 5) else "failed", failed)  # 5: no tests
+        return Outcome("timed out")
+    run = _read_finished(finished)
+    failed = [test for test, _, passed in run if not passed]
+    stopped = status == 2 and run and not failed
+    return Outcome("passed" if status in (0, 5) or stopped else "failed", len(run), failed)  # 5: no tests
 
 
 def choose_tests(root: Path, sample: Sample, number: int) -> tuple[list[str], list[str]]:
@@ -418,7 +433,7 @@ def try_mutant(sample: Sample, number: int, tree: Tree, budget: float, unsound: 
     original, status = file.read_text(encoding="utf-8"), file.stat()
     try:
         file.write_text(mutant.change(original) or "", encoding="utf-8")
-        outcome = run_tests(tree, chosen, sum(seconds[test] for test in chosen), "-x")
+        outcome = run_tests(tree, chosen, 2 * budget, "-x")
     finally:
         file.write_text(original, encoding="utf-8")
         os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))  # its compiled form is valid again
@@ -427,7 +442,7 @@ def try_mutant(sample: Sample, number: int, tree: Tree, budget: float, unsound: 
     if outcome.status == "timed out":
         return outcome.status
     known = sum(map(len, groups))
-    return f"survived ({f'first {len(chosen)} of ' if len(chosen) < known else ''}{known} tests)"
+    return f"survived ({f'first {outcome.run} of ' if outcome.run < known else ''}{known} tests)"
 
 
 # The whole
@@ -472,7 +487,7 @@ def find_killers(outcome: str) -> set[str]:
 def find_unsound(tree: Tree, outcomes: Mapping[int, str], seconds: Mapping[str, float]) -> set[str]:
     """The tests among those that noticed changes that fail in a tree without a change."""
     killers = order_tests(set[str]().union(*map(find_killers, outcomes.values())), seconds)
-    outcome = run_tests(tree, killers, sum(seconds[test] for test in killers)) if killers else Outcome("passed", [])
+    outcome = run_tests(tree, killers, math.inf) if killers else Outcome("passed")
     if outcome.status != "passed" and not outcome.failed:
         raise SystemExit(f"{tree.files}: tests do not run without a change either")
     return set(outcome.failed)
