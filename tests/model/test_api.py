@@ -212,6 +212,10 @@ def test_what_is_found_is_what_may_be_wrong_in_the_versions_asked_about(text, fi
         ("void g(Hand h) { h->went(1); }", ("using Hand = std::shared_ptr<arm::Arm>;",), ["arm::Base::went/1"]),
         ("M::M() : arm::Arm(1), x_{2} { went(3); }", ("class M : public arm::Arm { int x_; };",),
          ["arm::Arm::Arm/1", "arm::Base::went/1"]),
+        ("namespace n::m { void g(K & k) { k.went(1); } }",
+         ("namespace o { class K {}; } namespace n { class K : public arm::Arm {}; }",), ["arm::Base::went/1"]),
+        ("namespace o { void g(K & k) { k.went(1); } }",
+         ("namespace o { class K {}; } namespace n { class K : public arm::Arm {}; }",), []),
     ],
 )  # fmt: skip
 def test_what_headers_tell(text, headers, found, changes):
