@@ -427,6 +427,25 @@ def test_a_tree_of_more_files_or_folders_than_its_limits(tmp_path, made_elf, mon
     ]
 
 
+@pytest.mark.parametrize(
+    ("folder", "file", "text", "underlays"),
+    [
+        ("", "setup.sh", 'COLCON_CURRENT_PREFIX="/opt/ros/jazzy"\n. a\nCOLCON_CURRENT_PREFIX="/home/me/base"\n',
+         ["/opt/ros/jazzy", "/home/me/base"]),
+        ("", "setup.sh", '# COLCON_CURRENT_PREFIX="/a"\nCOLCON_CURRENT_PREFIX="$PREFIX"\n', []),
+        ("", "_setup_util.py", "CMAKE_PREFIX_PATH = r'/opt/ros/noetic;;/home/me/devel'",
+         ["/opt/ros/noetic", "/home/me/devel"]),
+        ("arm", "setup.sh", 'COLCON_CURRENT_PREFIX="/opt/ros/jazzy"', ["{around}", "/opt/ros/jazzy"]),
+    ],
+)  # fmt: skip
+def test_prefixes_that_setup_files_name(tmp_path, made_elf, folder, file, text, underlays):
+    put(tmp_path, "arm/share/arm/liba.so", made_elf("EM_X86_64", []))
+    put(tmp_path, file, text.encode())
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path / folder, store, jobs=1).underlays
+    assert list(found) == [each.format(around=tmp_path) for each in underlays]
+
+
 def test_prefixes_that_setup_files_name_have_a_limit(tmp_path, made_elf):
     put(tmp_path, "lib/liba.so", made_elf("EM_X86_64", []))
     put(tmp_path, "_setup_util.py", b"CMAKE_PREFIX_PATH = '" + b";".join(b"/%d" % n for n in range(9999)) + b"'")

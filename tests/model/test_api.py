@@ -212,6 +212,10 @@ def test_what_is_found_is_what_may_be_wrong_in_the_versions_asked_about(text, fi
         ("void g(Hand h) { h->went(1); }", ("using Hand = std::shared_ptr<arm::Arm>;",), ["arm::Base::went/1"]),
         ("M::M() : arm::Arm(1), x_{2} { went(3); }", ("class M : public arm::Arm { int x_; };",),
          ["arm::Arm::Arm/1", "arm::Base::went/1"]),
+        ("namespace n::m { void g(K & k) { k.went(1); } }",
+         ("namespace o { class K {}; } namespace n { class K : public arm::Arm {}; }",), ["arm::Base::went/1"]),
+        ("namespace o { void g(K & k) { k.went(1); } }",
+         ("namespace o { class K {}; } namespace n { class K : public arm::Arm {}; }",), []),
     ],
 )  # fmt: skip
 def test_what_headers_tell(text, headers, found, changes):
@@ -281,6 +285,22 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
 def test_the_type_of_a_parameter(parameter, type_):
     (function,) = CppCode(f"void f({parameter});".encode()).file.names
     assert [parameter_type(one) for one in function.parameters] == [type_]
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "members"),
+    [
+        ("enum Mode { A };", [("type", "", "Mode"), ("enumerator", "", "A")], []),
+        ("enum class Mode { A };", [("type", "", "Mode"), ("enumerator", "Mode", "A")], []),
+        ("class C { enum Mode { A }; };", [], [("type", "C", "Mode"), ("enumerator", "C", "A")]),
+        ("class C { enum struct Mode { A } m; };", [("enumerator", "C::Mode", "A")],
+         [("type", "C", "Mode"), ("variable", "C", "m")]),
+    ],
+)  # fmt: skip
+def test_enumerators_stand_beside_an_enum_or_in_it(text, names, members):
+    file = CppCode(text.encode()).file
+    inside = [one for cls in file.classes for those in cls.members.values() for one in those]
+    assert [[(one.kind, one.scope, one.name) for one in those] for those in (file.names, inside)] == [names, members]
 
 
 DRILL = "class Drill {{ public: void spin(int a{0}); }};"

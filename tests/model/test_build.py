@@ -286,6 +286,16 @@ LINKS = [
     ("if(A)\ntarget_link_libraries(x a)\nendif()", ["link a [A]"]),
     ("set_target_properties(x PROPERTIES INTERFACE_LINK_LIBRARIES a)", ["link a INTERFACE"]),
     ("add_library(y ALIAS x)\ntarget_link_libraries(y a)", ["link a"]),
+    (
+        "set_property(GLOBAL PROPERTY P a)\nset_property(GLOBAL PROPERTY Q b)\nget_property(L GLOBAL PROPERTY Q)\n"
+        "target_link_libraries(x ${L})",
+        ["link b"],
+    ),
+    (
+        "set_target_properties(x PROPERTIES P a Q b)\nget_target_property(L x Q)\ntarget_link_libraries(x ${L})",
+        ["link b"],
+    ),
+    ("get_property(L GLOBAL PROPERTY P)\ntarget_link_libraries(x ${L})", ["link ${L}"]),
 ]
 
 

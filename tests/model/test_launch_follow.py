@@ -326,6 +326,25 @@ def test_parameters_of_ros2():
 
 
 @pytest.mark.parametrize(
+    ("file", "node", "expected"),
+    [
+        ("'/v.yaml'", "'n'", []),
+        ("'/v.yaml'", "'g'", [()]),
+        ("'/v.yaml'", "'empty'", [()]),
+        ("'/v.yaml'", "'other'", []),
+        ("'/v.yaml'", "LaunchConfiguration('of')", [("$(has-node $(find p)/v.yaml $(arg of))",)]),
+        ("'/gone.yaml'", "'n'", [("$(has-node $(find p)/gone.yaml n)",)]),
+    ],
+)  # fmt: skip
+def test_whether_a_file_has_parameters_for_a_node(file, node, expected):
+    """nav2_common asks for a key of the file itself."""
+    asked = f"HasNodeParams(source_file=[FindPackageShare('p'), {file}], node_name={node})"
+    body = f"Node(package='k', executable='e', name='n', condition=IfCondition({asked}))"
+    files = {"p/a.launch.py": python(body), "p/v.yaml": "g: {n: {ros__parameters: {only: b}}}\nempty: {}"}
+    assert [started.conditions for started in launched(files, "p/a.launch.py").started] == expected
+
+
+@pytest.mark.parametrize(
     ("keys", "name", "holds"),
     [
         ("/**", "/a/b", True), ("**", "/a/b", True), ("/**", "", True), ("/a/b", "/a/b", True), ("a/b", "/a/b", True),

@@ -341,14 +341,6 @@ class Resolver:
         names = {one.name for one in self.homes(last)}
         if not names:
             return None
-        around = place.scope
-        while True:
-            full = f"{around}::{name}" if around else name
-            if full in names:
-                return CppType(full, own=True)
-            if not around:
-                break
-            around = around.rpartition("::")[0]
         for full in self.meanings(name, place):
             if full in names:
                 return CppType(full, own=True)

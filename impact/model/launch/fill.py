@@ -335,7 +335,7 @@ class Filling:
         entries = self.entries(file.value, 0) if both.value is not None and file.value is not None else None
         if entries is None:
             return unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
-        return known(flag(any(node.value in entry.path[:-1] for entry in entries)), both.assumed)
+        return known(flag(any(entry.path[:1] == (node.value,) for entry in entries)), both.assumed)
 
     def fill_eval(self, piece: ValuePart) -> LaunchText:
         expression = self.text(piece.parts[0])

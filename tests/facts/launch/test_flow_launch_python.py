@@ -165,6 +165,16 @@ BODIES = {
         """,
         [f"node package=p executable={e}" for e in "abcde"],
     ),
+    "ranges": (
+        """
+        return LaunchDescription([
+            Node(package='p', executable=e, name=f'n{i}')
+            for e, turns in {'a': range(1, 3), 'b': range(5, 0, -3), 'c': range(1, 9, 0)}.items() for i in turns])
+        """,
+        ["node package=p executable=a name=n1", "node package=p executable=a name=n2",
+         "node package=p executable=b name=n5", "node package=p executable=b name=n2",
+         "node package=p executable=c name=n<other i> [each <other for i in turns>]"],
+    ),
     "loop": (
         """
         return LaunchDescription(

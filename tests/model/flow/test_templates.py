@@ -32,8 +32,10 @@ def main(body: str) -> str:
 
 
 def test_each_program_has_the_type_that_its_class_gives():
-    """Through a base, a base's base, a member function outside of its class, and an object of the template itself."""
+    """Through a base, a base's base, a member function outside of its class, and an object of the template itself,
+    beside Python."""
     found = graph({
+        "p/a.py": "import rclpy",
         "p/base.hpp": BASE,
         "p/clear.cpp": main("rclcpp::spin(std::make_shared<calls::Clearer>());"),
         "p/set.cpp": main("rclcpp::spin(std::make_shared<calls::Setter>());"),
