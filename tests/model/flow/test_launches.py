@@ -4,7 +4,6 @@ import os
 
 import pytest
 from joining import manifest, write
-
 from rosimpact.edges import processes
 from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.store import Store
