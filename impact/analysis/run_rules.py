@@ -121,8 +121,6 @@ def _run_in_parts(
     """What the rules yield for these views, each with its place among them, and flow_rules on the message flow, with
     _FLOW for a place; failed: receives those of them that failed."""
     packages = list(opened.workspace.packages)
-    from ..model.flow.workspace import flow_of
-
     if not packages or not processes.may_fork():
         for place in places:
             yield place, list(_run_all(rules, opened.views[place], crashed))
@@ -135,6 +133,8 @@ def _run_in_parts(
     size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs) if jobs > 1 else len(packages)))
     parts = [(place, at) for place in places for at in range(0, len(packages), size)]
     if flow_rules:
+        from ..model.flow.workspace import flow_of
+
         flow_of(opened.workspace).jobs = jobs
     # The message flow takes longest.
     tasks = [(_FLOW, 0), *parts] if flow_rules else parts
