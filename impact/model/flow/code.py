@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
@@ -56,21 +56,16 @@ class Fn:
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
-        declared = {p.name for p in facts.parameters}
+        self.locals = {p.name for p in facts.parameters}
         python = source.facts.language == "python"
-        assigned = self.assigned
         for each in facts.assignments:
             target = each.target
-            if target in assigned:
-                assigned[target].append(each)
-            else:
-                assigned[target] = [each]
+            self.assigned.setdefault(target, []).append(each)
             if (each.type or (python and each.operator == "=")) and "." not in target:
-                declared.add(target)
+                self.locals.add(target)
         # What a module of Python assigns is everybody's in it.
         if python:
-            declared = declared.difference(facts.outside) if facts.name else set()
-        self.locals = declared
+            self.locals = self.locals.difference(facts.outside) if facts.name else set()
 
     def forget(self) -> None:
         """Drops what rests on the bodies of other functions."""
@@ -112,18 +107,14 @@ class _About(Generic[_Row]):
     def __init__(self, rows: Iterable[tuple[str, _Row]]):
         self._rows: list[_Row] = []
         # Places of rows by their path, and paths by their last part.
-        self._places: dict[str, list[int]] = {}
-        self._paths: dict[str, list[str]] = {}
-        places = self._places
+        self._places: dict[str, list[int]] = defaultdict(list)
+        self._paths: dict[str, list[str]] = defaultdict(list)
         for place, (path, row) in enumerate(rows):
             self._rows.append(row)
-            if path in places:
-                places[path].append(place)
-            else:
-                places[path] = [place]
-        for path in places:
+            self._places[path].append(place)
+        for path in self._places:
             pieces = _pieces(path)
-            self._paths.setdefault(pieces[-1] if pieces else path, []).append(path)
+            self._paths[pieces[-1] if pieces else path].append(path)
         self._found: dict[str, dict[Variable, list[_Row]]] = {}
 
     def of(self, variable: Variable, meaning: Callable[[str, Fn], Variable]) -> Sequence[_Row]:
@@ -229,7 +220,6 @@ class FlowCode:
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
         self._functions_of: dict[int, list[Fn]] = {}
-        self._names_in: dict[str, Set[str]] = {}
         self._members: dict[int, frozenset[str]] = {}
         self._member_types: dict[tuple[str, str], tuple[str, CodeFile, str] | None] = {}
 
@@ -543,13 +533,6 @@ class FlowCode:
         """All functions whose owner is a class of this name, lambdas in them included."""
         return self._by_owner.get(tail(name), [])
 
-    def _names_in_class(self, name: str) -> Set[str]:
-        """The last parts of the names of all functions whose owner is a class of this name."""
-        known = self._names_in.get(name)
-        if known is None:
-            known = self._names_in[name] = {tail(fn.name) for fn in self.functions_of_class(name)}
-        return known
-
     def functions_of(self, cls: Cls) -> list[Fn]:
         """The functions of one class, lambdas in them included."""
         known = self._functions_of.get(id(cls.facts))
@@ -747,11 +730,9 @@ class FlowCode:
     def _calls(self) -> dict[str, list[tuple[int, Fn, FlowCall]]]:
         """All calls by the last part of the callee, with their place among all."""
         found: dict[str, list[tuple[int, Fn, FlowCall]]] = defaultdict(list)
-        place = 0
-        for fn in self.functions:
-            for call in fn.facts.calls:
-                place += 1
-                found[tail(call.callee)].append((place, fn, call))
+        every = ((fn, call) for fn in self.functions for call in fn.facts.calls)
+        for place, (fn, call) in enumerate(every):
+            found[tail(call.callee)].append((place, fn, call))
         return found
 
     def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
@@ -775,7 +756,7 @@ class FlowCode:
         if "::" in callee:
             meant = self.meant(callee, fn.source, fn.scope)
             cls = self.class_of(around(meant), fn.source, fn.scope)
-            if cls is not None and last in self._names_in_class(cls.name):
+            if cls is not None and (tail(cls.name), last) in self._methods:
                 return self.method(cls, last)
             wanted = parts_of(meant)
             found = [f for f in candidates or () if not f.facts.owner and parts_of(f.name)[-len(wanted) :] == wanted]

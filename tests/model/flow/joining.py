@@ -52,12 +52,17 @@ def ends(found: Graph, role: str) -> set[tuple[str, str, str]]:
     return {(e.node, e.topic or "?", e.type) for e in found.endpoints if e.role == role and not e.implied}
 
 
-def graph_on_disk(root: Path, files: dict[str, str], launch: str = "") -> Graph:
-    """The graph of a workspace that is written to a folder, or of what one of its launch files starts."""
+def write(root: Path, files: dict[str, str]) -> None:
+    """Writes the files of a workspace to a folder."""
     for name, text in files.items():
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(dedent(text).lstrip())
+
+
+def graph_on_disk(root: Path, files: dict[str, str], launch: str = "") -> Graph:
+    """The graph of a workspace that is written to a folder, or of what one of its launch files starts."""
+    write(root, files)
     with Store(root / ".cache") as store:
         return graph_of(linked(open_tree(root, ""), store), None, launch=launch)
 

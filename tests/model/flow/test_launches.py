@@ -1,0 +1,71 @@
+"""What the launch files of a workspace start, from one process and from several."""
+
+import os
+
+import pytest
+from joining import manifest, write
+from rosimpact.edges import processes
+from rosimpact.impact.analysis.session import open_tree
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.flow import launches as module
+from rosimpact.impact.model.flow.workspace import flow_of, linked
+
+EYE = """
+    #include <rclcpp/rclcpp.hpp>
+    class Eye : public rclcpp::Node {
+     public:
+      Eye() : Node("eye") { pub_ = create_publisher<sensor_msgs::msg::Image>("image", 1); }
+      rclcpp::Publisher<sensor_msgs::msg::Image>::SharedPtr pub_;
+    };
+    int main(int argc, char** argv) { rclcpp::init(argc, argv); rclcpp::spin(std::make_shared<Eye>()); }
+"""
+FILES = {
+    "eyes/package.xml": manifest("eyes", "ament_cmake"),
+    "eyes/CMakeLists.txt": """
+        cmake_minimum_required(VERSION 3.16)
+        project(eyes)
+        find_package(ament_cmake REQUIRED)
+        find_package(rclcpp REQUIRED)
+        add_executable(eye src/eye.cpp)
+        ament_package()
+    """,
+    "eyes/src/eye.cpp": EYE,
+    "eyes/launch/all.launch.xml": """
+        <launch><include file="$(find-pkg-share eyes)/launch/eye0.launch.xml"/></launch>
+    """,
+    "eyes/launch/nothing.launch.xml": "<launch/>",
+    **{
+        f"eyes/launch/eye{number}.launch.xml": f"""
+            <launch>
+              <node pkg="eyes" exec="eye" name="eye{number}"><remap from="image" to="image{number}"/></node>
+              <node pkg="elsewhere" exec="ear"/>
+            </launch>
+        """
+        for number in range(9)
+    },
+}
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        yield linked(open_tree(tmp_path / "ws", ""), store)
+
+
+@pytest.mark.skipif(not processes.may_fork(), reason="processes are forked here only on Linux")
+@pytest.mark.parametrize("dying", ["", "_follow", "_start"])
+def test_several_processes_tell_the_same_as_one(workspace, monkeypatch, dying):
+    """dying: what ends every process but this one."""
+    here = os.getpid()
+    if dying:
+        done = getattr(module, dying)
+        monkeypatch.setattr(module, dying, lambda *given: done(*given) if os.getpid() == here else os._exit(1))
+    alone, several = (tuple(module._launches(workspace, lambda: flow_of(workspace).code, jobs)) for jobs in (1, 2))
+    assert several == alone
+    assert [(each.path.rpartition("/")[2], [start.names for start in each.starts]) for each in alone] == [
+        ("all.launch.xml", [("/image",)]),
+        *((f"eye{number}.launch.xml", [("/image",)]) for number in range(1, 9)),
+    ]
+    assert [node.renamed[0].written for node in alone[1].starts] == ["image"]
+    assert all(each.missing for each in alone)
