@@ -628,7 +628,6 @@ def names_variables(tail: Sequence[str]) -> bool:
     """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
     return not tail or (
         len(tail) < 60
-        and "(" not in [word for word in tail if word == "operator"]
         and not any(
             word
             in ("class", "struct", "namespace", "using", "typedef", "enum", "template", "public", "private", "static")
