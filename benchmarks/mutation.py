@@ -1,6 +1,6 @@
 """Changes the code in small ways and counts which of the changes the tests notice.
 
-usage: mutation.py --results FILE [--rev HEAD] [--number 200] [--first N] [--seed 1] [--jobs 2] [--budget 60]
+usage: mutation.py --results FILE [--rev HEAD] [--number 200] [--first N] [--seed 1] [--jobs 2] [--budget 20]
                    [FOLDER ...]
 
 Of the given folders (impact/rules, impact/model and impact/facts without any) `number` places are drawn, in modules as
@@ -24,8 +24,9 @@ further one begins. A test that fails without the change too does not count. Out
     survived      all tests passed; `first N of M tests` if the budget did not allow all of them
     not reached   no test executes the statement
 
-A run that was stopped continues where FILE ends. Samples of two revisions (--rev, a FILE each) have the same share of
-noticed changes if their intervals say so; the changes are not the same.
+A run that was stopped continues where FILE ends; the first N changes of a sample are a sample too (--first). To compare
+two revisions, draw a sample of each (--rev, with a FILE of its own) and see whether the intervals of their shares of
+noticed changes overlap. PYTEST_ADDOPTS can leave out tests, for both alike.
 """
 
 from __future__ import annotations
@@ -263,7 +264,7 @@ def record_reached(rev: str, mutants: list[Mutant], scratch: Path, jobs: int) ->
         for line in file.read_text(encoding="utf-8").splitlines():
             numbers, _, test = line.partition("\t")
             name, _, phase = test.rpartition(" ")
-            # What a fixture does first may serve all tests of its file.
+            # What a fixture makes may serve all tests of its file.
             names = [other for other in seconds if _file(other) == _file(name)] if phase == "(setup)" else [name]
             for number in map(int, numbers.split()):
                 tests[number].update(dict.fromkeys(each for each in names if not each or each in seconds))
@@ -294,14 +295,14 @@ def pytest_collection_modifyitems(items: list[Any]) -> None:
         items[:] = sorted((item for item in items if item.nodeid in order), key=lambda item: order[item.nodeid])
 
 
-def pytest_runtest_logstart() -> None:
-    global _started
-    _started = sum(os.times()[:4])
-
-
 _started = 0.0
 _taken = 0.0
 _failed: set[str] = set()
+
+
+def pytest_runtest_logstart() -> None:
+    global _started
+    _started = sum(os.times()[:4])
 
 
 def pytest_runtest_makereport(item: Any, call: Any) -> None:
@@ -449,7 +450,7 @@ def try_mutant(sample: Sample, number: int, tree: Tree, budget: float, unsound: 
 
 
 def make_tree(folder: Path, rev: str) -> Tree:
-    """A copy of the files of a revision, compiled."""
+    """A copy of the files of a revision."""
     tree = Tree(folder / "tree", folder / "packages")
     tree.files.mkdir(parents=True)
     archive = subprocess.Popen(["git", "-C", ROOT, "archive", rev], stdout=subprocess.PIPE)
@@ -516,7 +517,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, help="how many of them to try; all without it")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2, help="how many to try at a time")
-    parser.add_argument("--budget", type=float, default=60, help="seconds for the tests of one change")
+    parser.add_argument("--budget", type=float, default=20, help="seconds for the tests of one change")
     arguments = parser.parse_args()
     results: Path = arguments.results
     rev = subprocess.check_output(["git", "-C", ROOT, "rev-parse", arguments.rev], text=True).strip()

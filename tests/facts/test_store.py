@@ -448,6 +448,26 @@ def test_a_file_that_is_damaged_again_and_again_is_done_without(tmp_path):
         assert len(store.notes) == 3
 
 
+def test_a_damaged_file_that_cannot_be_replaced_is_done_without(tmp_path, monkeypatch):
+    opened = []
+
+    def connect(store, real=Store._connect):
+        opened.append(store)
+        assert len(opened) < 9, "it is opened again and again"
+        return real(store)
+
+    def replace(*_):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    (tmp_path / "facts.sqlite").write_bytes(b"this is text, and more than a header of it" * 10)
+    monkeypatch.setattr(Store, "_connect", connect)
+    monkeypatch.setattr(os, "replace", replace)
+    with Store(tmp_path) as store:
+        store.put(rows(1, 1))
+        assert store.find([key(1)]) == {key(1)}
+        assert len(store.notes) == 1 and "cannot be read" in store.notes[0]
+
+
 @pytest.mark.parametrize("before", [b"", b"SQLite format 3\0" + b"\7" * 9000])
 def test_ten_processes_that_begin_on_a_damaged_file(tmp_path, before):
     (tmp_path / "facts.sqlite").write_bytes(before)

@@ -103,6 +103,10 @@ OTHERS = [
       "enumerator E::D: E", "enumerator E::F: E"]),
     ("namespace n { typedef enum { A = 1 << 2 } E; }", ["enum n::E", "enumerator n::A: n::E"]),
     ("typedef struct { int x; } S, *P;", ["struct S", "alias P: S*", "field S::x: int"]),
+    ("struct S { int x; } b, * c;", ["struct S", "variable b: S", "variable c: S*", "field S::x: int"]),
+    # the semicolon is missing
+    ("struct A {}\nusing B = int;", ["struct A", "alias B: int"]),
+    ("struct A {}\nstatic int f();", ["struct A", "function f(): int [static]"]),
     ("namespace a::b { struct S; int n = 1, *m; }", ["variable a::b::n: int", "variable a::b::m: int*"]),
     ("namespace a = b::c; using namespace a;", ["namespace alias a: b::c", "using namespace : a"]),
     ("template<typename T> concept C = requires(T t) { t.f(); };", ["concept C"]),
