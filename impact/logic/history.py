@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
-from ...edges.answers import answer_once
 from ...edges.limits import limits
+from ...edges.memory import cached_method
 from ..facts import kinds
 from ..model.package import role_of_folder
 from ..tree import IGNORE_MARKERS, GitTree, TreeError, shown
@@ -185,7 +185,7 @@ class CommitHistory:
             yield (name if name not in seen else f"{name} in {path}"), state
             seen.add(name)
 
-    @answer_once
+    @cached_method
     def _content(self, folder: Any, rosbuild: bool, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
         files = self._listed(folder, rosbuild, top=True)
         files = tuple(file for file in files if role_of_folder(file.path) != "test")
@@ -217,7 +217,7 @@ class CommitHistory:
         known = self._packages[folder] = tuple(found)
         return known
 
-    @answer_once
+    @cached_method
     def _manifest(self, blob, rosbuild: bool) -> tuple[str, int]:
         """Name (empty where the manifest has none) and generation that a manifest tells."""
         data = b"" if rosbuild else _COMMENT.sub(b"", self.read(blob)[:200_000])
@@ -250,7 +250,7 @@ class CommitHistory:
             self._files[folder, rosbuild] = known
         return known
 
-    @answer_once
+    @cached_method
     def _is_python(self, blob) -> bool:
         return kinds.script_kind(self.read(blob)[:512]) == "python"
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from ...edges.answers import answer_once
+from ...edges.memory import cached_method
 from ..facts.flow import FlowExpr
 from ..model.flow.code import FlowCode, Fn
 from ..model.flow.graph import GuardAt
@@ -27,7 +27,7 @@ class Meaning:
     def __init__(self, code: FlowCode):
         self.code = code
 
-    @answer_once
+    @cached_method
     def of(self, guard: GuardAt) -> str:
         """What a guard's text means; empty when that is what it says."""
         if guard.kind not in ("if", "unless", "while"):

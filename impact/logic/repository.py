@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ...edges import processes
-from ...edges.answers import answer_once
+from ...edges.memory import cached_method
 from ..facts import kinds
 from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .changes import LogicChange, ReachedSubscriber, Side
@@ -305,7 +305,7 @@ class _Digests:
         self.packed.update(rows)
         self.store.remember("digest", [(digest_key(key), unpack(data)) for key, data in rows])
 
-    @answer_once
+    @cached_method
     def inlets(self, key: bytes):
         return decoded(self.packed.get(key)).inlets
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from ...edges.answers import answer_once
+from ...edges.memory import cached_method
 from ..facts import kinds
 from ..facts.flow import FlowCall, FlowFile
 from ..model.flow.code import FlowCode, Fn, tail
@@ -274,7 +274,7 @@ class _Digester:
             start = StatementStart(start.kind)
         return Path(start, tuple(gates))
 
-    @answer_once
+    @cached_method
     def _is_fixed(self, guard: GuardAt) -> bool:
         """Whether a guard asks for variables alone that its function, and what that calls of the code, leaves alone."""
         fn = self.join.code.by_name.get((guard.path, guard.of))
@@ -291,13 +291,13 @@ class _Digester:
             return False
         return name not in self._changes(fn) and (local or not self._calls_own(fn))
 
-    @answer_once
+    @cached_method
     def _changes(self, fn: Fn) -> frozenset[str]:
         """The variables of which a function changes more than by assigning to them."""
         written = (one.path for one in fn.facts.accesses if one.kind != "read")
         return frozenset(path.removeprefix("this.").partition(".")[0] for path in written)
 
-    @answer_once
+    @cached_method
     def _calls_own(self, fn: Fn) -> bool:
         return any(self.join.code.targets(call.callee, fn) for call in fn.facts.calls)
 

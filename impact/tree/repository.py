@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from ...edges import files
-from ...edges.answers import answer_once
 from ...edges.limits import KB, limits, size_text
+from ...edges.memory import cached_method
 from .ignore import git_folder
 from .paths import LONGEST_PATH, TreeError, shown
 
@@ -311,7 +311,7 @@ class RepositoryObjects:
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
-    @answer_once
+    @cached_method
     def folder(self, oid: Any) -> tuple[tuple[str, int, Any], ...]:
         """(name, mode, id) of everything in a folder; names that no file can have are left out."""
         kind, size = self._sized(oid)
@@ -329,7 +329,7 @@ class RepositoryObjects:
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
-    @answer_once
+    @cached_method
     def _entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
         return {name: (mode, item) for name, mode, item in self.folder(oid)}
 
@@ -337,7 +337,7 @@ class RepositoryObjects:
         """(mode, id) of what a folder has under a name."""
         return self._entries(oid).get(name)
 
-    @answer_once
+    @cached_method
     def link(self, oid: Any) -> str:
         """What a link leads to."""
         return self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
