@@ -4,7 +4,8 @@ import msgspec
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from rosimpact.edges.limits import size_text
+from rosimpact.edges.limits import Limits, size_text
+from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.kinds import (
     EXTRACTORS,
     SEARCHES,
@@ -90,6 +91,24 @@ def test_first_line_tells_scripts_apart(data, kind):
     assert facts.kind == kind
     assert (facts.facts is None) == (kind == "script")
     assert decode("script", encode(facts)) == facts
+
+
+LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "parameters", "script", "settings")
+
+
+@pytest.mark.parametrize(
+    ("kind", "limit"),
+    [
+        ("manifest", "manifest"), ("cmake", "cmake"), ("colcon_cmake", "cmake"), ("msg", "interface"),
+        ("cpp", "cpp"), ("flow_cpp", "cpp"), ("declared_cpp", "cpp"), ("python", "python"), ("setup_py", "python"),
+        ("flow_launch_python", "python"), ("launch_xml", "launch"), ("flow_launch_xml", "launch"),
+        ("params", "parameters"), ("script", "script"), ("shell", "script"), ("pyproject", "settings"),
+    ],
+)  # fmt: skip
+def test_each_kind_has_its_limit(kind, limit, monkeypatch):
+    given = Limits(**{name: number for number, name in enumerate(LIMITS)})
+    monkeypatch.setattr(kinds, "limits", lambda: given)
+    assert LIMITS[largest(kind)] == limit
 
 
 @pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script", "flow_script"} - SEARCHES))

@@ -225,6 +225,11 @@ BODIES = {
             "node package=p executable=b [unless <equals: <env E>, x>]",
         ],
     ),
+    "a boolean argument of MoveIt": (
+        "return LaunchDescription([DeclareBooleanLaunchArg('debug', False), DeclareBooleanLaunchArg('go', "
+        "default_value=True)])",
+        ["argument name=debug default=False", "argument name=go default=True"],
+    ),
     "opaque function": (
         """
         def setup(context, name):
