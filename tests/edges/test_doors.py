@@ -15,7 +15,6 @@ DOORS = {
         "impact/targets/machine/loader.py": "a descriptor of open_regular()",
         "corpus/report.py": "a descriptor of open_regular()",
         "corpus/sources/ros_answers.py": "a descriptor of open_regular()",
-        "impact/targets/unpacked.py": "a function of that name",
     },
     "os.open": {
         "edges/files.py": "the door",
