@@ -426,8 +426,8 @@ def try_mutant(sample: Sample, number: int, tree: Tree, budget: float, unsound: 
     unsound: tests that fail without a change."""
     mutant, seconds = sample.mutants[number], sample.seconds
     groups = [[test for test in group if test not in unsound] for group in choose_tests(tree.files, sample, number)]
-    afforded = [take_affordable(group, seconds, part) for group, part in zip(groups, (budget, budget / 4), strict=True)]
-    chosen = order_tests(itertools.chain(*afforded), seconds)
+    parts = zip(groups, (budget, budget / 4), strict=True)
+    chosen = [test for group, part in parts for test in order_tests(take_affordable(group, seconds, part), seconds)]
     if not chosen:
         return "not reached"
     file = tree.files / mutant.path

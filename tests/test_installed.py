@@ -427,6 +427,15 @@ def test_a_tree_of_more_files_or_folders_than_its_limits(tmp_path, made_elf, mon
     ]
 
 
+def test_where_its_own_libraries_are_found(tmp_path, made_elf):
+    put(tmp_path, "arm/lib/liba.so.1.2", made_elf("EM_X86_64", [], "liba.so.1"))
+    put(tmp_path, "arm/lib/arm/reach", made_elf("EM_X86_64", []))
+    with Store(tmp_path / "cache") as store:
+        places = read_installed(tmp_path, store, jobs=1).places
+    there = str(tmp_path / "arm/lib/liba.so.1.2")
+    assert places == {"liba.so.1.2": there, "liba.so.1": there}
+
+
 @pytest.mark.parametrize(
     ("folder", "file", "text", "underlays"),
     [

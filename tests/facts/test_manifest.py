@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.facts.manifest import Dependency, extract
+from rosimpact.impact.facts.markup import unescape
 
 HEAD = """<?xml version="1.0"?>
 <package format="{format}">
@@ -250,3 +251,16 @@ def test_the_short_way_agrees_with_catkin_pkg(format_, dependencies, name, versi
         data.replace(b"walker", name.encode()).replace(b"1.2.3", version.encode()).replace(b"a@b.org", email.encode())
     )
     agrees(data)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("&#65;&#x42;&lt;&amp;", "AB<&"),
+        ("&#xE000;&#x10FFFF;", "\ue000\U0010ffff"),
+        # no characters
+        *((text, text) for text in ("&#xD800;", "&#xDFFF;", "&#x110000;", "&other; a & b")),
+    ],
+)
+def test_references_to_characters(text, expected):
+    assert unescape(text) == expected

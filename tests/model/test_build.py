@@ -108,6 +108,7 @@ FOUND = [
     ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt)\nfind_package(A)\nendif()", ["A"]),
     ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/none)\nfind_package(A)\nendif()", []),
     ("if(EXISTS /opt/x)\nfind_package(A)\nendif()", ["A [EXISTS /opt/x]"]),
+    ("set(v X)\nif(A)\nset(v Y)\nelse()\nfind_package(${v})\nendif()", ["X [!A]"]),
     ("if(X)\nif(NOT X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["B [X]"]),
     ("if(NOT X)\nif(NOT X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["A [NOT X]"]),
     ("if(NOT X)\nif(X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["B [NOT X]"]),

@@ -196,7 +196,7 @@ class _Reader:
             self._lose(head)
             return _BODY
         word = tokens[place]
-        if word == "namespace" or (word == "inline" and tokens[place + 1 : place + 2] == ["namespace"]):
+        if word == "namespace":
             self._expanded(reading)
             return _Opened("namespace", tokens, reading)
         while word in ("const", "volatile") and place + 1 < len(tokens):

@@ -313,10 +313,6 @@ class Resolver:
         if shorter and shorter != name and not shorter.endswith("::"):
             inner = self.named(shorter, place, depth + 1)
             return inner._replace(pointer=True) if inner is not None and not inner.own else None
-        if self.scope is not None and "::" not in name:
-            told = self._interface(name)
-            if told is not None:
-                return told
         # An alias of some class, where nothing else is so called.
         found = {
             self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)

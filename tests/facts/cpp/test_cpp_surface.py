@@ -104,6 +104,7 @@ OTHERS = [
     ("namespace n { typedef enum { A = 1 << 2 } E; }", ["enum n::E", "enumerator n::A: n::E"]),
     ("typedef struct { int x; } S, *P;", ["struct S", "alias P: S*", "field S::x: int"]),
     ("struct S { int x; } b, * c;", ["struct S", "variable b: S", "variable c: S*", "field S::x: int"]),
+    ("namespace a { inline namespace v1 { struct S {}; int n; } }", ["struct a::v1::S", "variable a::v1::n: int"]),
     # the semicolon is missing
     ("struct A {}\nusing B = int;", ["struct A", "alias B: int"]),
     ("struct A {}\nstatic int f();", ["struct A", "function f(): int [static]"]),

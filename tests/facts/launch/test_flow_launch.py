@@ -69,6 +69,7 @@ def test_substitutions_of_ros2(text, expected):
         ("a  b", [["a"], ["b"]]),
         ("'a b' \"c\"d", [["a b"], ["cd"]]),
         ("x$(arg a)y z", [["x", ("arg", "a"), "y"], ["z"]]),
+        ("$(arg a) b $(arg c)", [[("arg", "a")], ["b"], [("arg", "c")]]),
         ("'' a", [[""], ["a"]]),
         ("", []),
     ],
