@@ -136,12 +136,20 @@ class Workspace:
                 yield place
 
     @cached_property
-    def unread(self) -> frozenset[str]:
-        """Files and folders that were not read, as submodules that are not checked out, and folders around them."""
-        found: set[str] = set()
-        for problem in self.gathered.problems:
-            found.update(itertools.accumulate(problem.path.split("/"), "{}/{}".format))
-        return frozenset(found)
+    def _unread(self) -> frozenset[str]:
+        """Files and folders that were not read: as submodules that are not checked out, and with COLCON_IGNORE."""
+        gathered = self.gathered
+        return frozenset(problem.path for problem in (*gathered.problems, *gathered.tree.skipped))
+
+    @cached_property
+    def _around_unread(self) -> frozenset[str]:
+        parts = (itertools.accumulate(path.split("/"), "{}/{}".format) for path in self._unread)
+        return frozenset(itertools.chain.from_iterable(parts))
+
+    def is_unread(self, path: str) -> bool:
+        """Whether a file or folder was not read, lies in a folder that was not, or holds such ones."""
+        inside = itertools.accumulate(path.split("/"), "{}/{}".format)
+        return path in self._around_unread or not self._unread.isdisjoint(inside)
 
     @cached_property
     def headers(self) -> dict[str, list[str]]:
@@ -463,7 +471,7 @@ class _Linker:
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
         self.code = f"{source_key(__name__)} {version_of_all()}"
-        unread = sorted(problem.path for problem in gathered.problems)
+        unread = sorted(problem.path for problem in (*gathered.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {unread}".encode("utf-8", "backslashreplace"))
 
     def digests(self, store) -> list[LinkedPackage]:

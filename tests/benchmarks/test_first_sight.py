@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -416,6 +417,9 @@ def checkout(clone, commit, monkeypatch) -> Path:
         "    return {'result': 'failed', 'packages': 2, 'alarmed': 2, 'warnings': 0}\n"
     )
     commit({**batch, "score.py": judgement}, "initial")
+    # Installed from a wheel, it is another than the one beside the benchmark, which is refused.
+    beside = SimpleNamespace(origin=str(Path(first_sight.__file__).parents[1] / "impact/__init__.py"))
+    monkeypatch.setattr(first_sight, "find_spec", lambda name: beside)
     for name, path in (("ROOT", root), ("LEDGER", root / "ledger.jsonl"), ("BATCHES", root / "batches")):
         monkeypatch.setattr(first_sight, name, path)
     return root

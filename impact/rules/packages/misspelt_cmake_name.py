@@ -19,7 +19,8 @@ Use instead
     ament_export_dependencies(nav2_costmap_2d nav2_util)
 
 Not reported
-    Names that anybody is known to provide, that some distro has released, or that no declared name resembles.
+    Names that anybody is known to provide, that some distro has released, or that no declared name resembles; names
+    that resemble a released package of plain CMake whose configurations are not known.
 """
 
 from ...model.misspelling import SpellingIndex
@@ -53,10 +54,19 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
             continue
         meant = near.nearest(name) if exact else None
+        if meant is not None and _may_install_any(view, meant):
+            continue
         if meant is not None and meant != name and view.target.ever_released(name) is False:
             doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
             fix = (Replace(at.path, at.line, at.column, name, meant),)
             yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
+
+
+def _may_install_any(view: TargetView, name: str) -> bool:
+    """Whether a released package is built by plain CMake, which gives configurations any name (protobuf_comm installs
+    `ProtobufComm`), and is not known to install one of its own name."""
+    outside = name not in view.workspace.packages
+    return outside and view.target.build_type(name) == "cmake" and not view.providers.cmake(name)
 
 
 def _named(package):

@@ -78,7 +78,7 @@ def _list_directories(view: TargetView, package):
         inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
         if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
             continue
-        if (f"{package.path}/{inside}" if package.path else inside) in view.workspace.unread:
+        if view.workspace.is_unread(f"{package.path}/{inside}" if package.path else inside):
             continue  # a submodule that is not checked out is a folder all the same
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 

@@ -76,7 +76,7 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue  # made by the build, or a folder that git cannot keep while it is empty
             if path + ".in" in package.files or (install.kind == "files" and "." in path and _is_written(path)):
                 continue
-            if _is_made(made, path, install.kind):
+            if _is_made(made, path, install.kind) or view.workspace.is_unread(path):
                 continue
             inside = path[len(package.path) :].lstrip("/")
             yield Diagnostic(install.at, inside, package.name, kind="absent")
