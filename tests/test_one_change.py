@@ -249,7 +249,9 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeyp
             whole = [list(rule.run(view)) for rule in rules]
             digests = [package.digest for package in opened.workspace]
             unseen: object = _Unseen()
-            bare = Workspace(digests, unseen, opened.workspace.ros, unseen, unseen)  # type: ignore[arg-type]
+            # The identity speaks of what was not read, too.
+            ros, unread = opened.workspace.ros, opened.workspace.unread
+            bare = Workspace(digests, unseen, ros, unseen, unseen, unread=unread)  # type: ignore[arg-type]
             again = TargetView(bare, view.target, view.providers, view.config)
             assert [list(rule.run(again)) for rule in rules] == whole
 

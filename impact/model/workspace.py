@@ -112,9 +112,12 @@ class Workspace:
         read: Callable[[str], bytes],
         identity: bytes = b"",
         whole: bool = True,
+        unread: frozenset[str] = frozenset(),
     ):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
+        # Files and folders that were not read, as submodules that are not checked out.
+        self.unread = unread
         # Differs whenever a digest, their order or the generation does.
         self.identity = identity
         # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
@@ -136,20 +139,14 @@ class Workspace:
                 yield place
 
     @cached_property
-    def _unread(self) -> frozenset[str]:
-        """Files and folders that were not read: as submodules that are not checked out, and with COLCON_IGNORE."""
-        gathered = self.gathered
-        return frozenset(problem.path for problem in (*gathered.problems, *gathered.tree.skipped))
-
-    @cached_property
     def _around_unread(self) -> frozenset[str]:
-        parts = (itertools.accumulate(path.split("/"), "{}/{}".format) for path in self._unread)
+        parts = (itertools.accumulate(path.split("/"), "{}/{}".format) for path in self.unread)
         return frozenset(itertools.chain.from_iterable(parts))
 
     def is_unread(self, path: str) -> bool:
         """Whether a file or folder was not read, lies in a folder that was not, or holds such ones."""
         inside = itertools.accumulate(path.split("/"), "{}/{}".format)
-        return path in self._around_unread or not self._unread.isdisjoint(inside)
+        return path in self._around_unread or not self.unread.isdisjoint(inside)
 
     @cached_property
     def headers(self) -> dict[str, list[str]]:
@@ -408,7 +405,7 @@ def link(
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
-    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest(), linker.whole)
+    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest(), linker.whole, linker.unread)
 
 
 def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
@@ -471,8 +468,8 @@ class _Linker:
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
         self.code = f"{source_key(__name__)} {version_of_all()}"
-        unread = sorted(problem.path for problem in (*gathered.problems, *tree.skipped))
-        self.identity = hashlib.sha1(f"{self.code} {ros} {unread}".encode("utf-8", "backslashreplace"))
+        self.unread = frozenset(problem.path for problem in (*gathered.problems, *tree.skipped))
+        self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
 
     def digests(self, store) -> list[LinkedPackage]:
         places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
