@@ -405,7 +405,8 @@ def link(
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
-    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest(), linker.whole, linker.unread)
+    identity = linker.identity.digest()
+    return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread)
 
 
 def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
