@@ -70,20 +70,20 @@ def make_fixes(
     findings = list(findings)
     wanted: dict[tuple[str, str], set[str]] = {}
     for finding in findings:
-        for cure in finding.fix:
-            if isinstance(cure, Declare):
-                wanted.setdefault((cure.path, cure.name), set()).add(cure.tag)
+        for action in finding.fix:
+            if isinstance(action, Declare):
+                wanted.setdefault((action.path, action.name), set()).add(action.tag)
     content: dict[str, bytes | None] = {}
 
     def edits(fix: tuple[FixAction, ...]) -> tuple[Edit, ...]:
         result: list[Edit] = []
-        for cure in fix:
-            if cure.path not in content:
-                content[cure.path] = data = read(cure.path)
+        for action in fix:
+            if action.path not in content:
+                content[action.path] = data = read(action.path)
                 if originals is not None and data is not None:
-                    originals[cure.path] = data
-            data = content[cure.path]
-            part = () if data is None else _made(cure, data, wanted)
+                    originals[action.path] = data
+            data = content[action.path]
+            part = () if data is None else _made(action, data, wanted)
             if not part:
                 return ()
             result += part
@@ -92,19 +92,19 @@ def make_fixes(
     return [finding._replace(fix=edits(finding.fix)) if finding.fix else finding for finding in findings]
 
 
-def _made(cure: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
-    if isinstance(cure, Declare):
-        tags = wanted.get((cure.path, cure.name), {cure.tag})
-        return declare_dependency(data, cure.name, _joint(cure.tag, tags), cure.path)
-    if isinstance(cure, Remove):
-        return remove_dependency(data, cure.name, cure.tag, cure.path)
-    if isinstance(cure, Replace):
-        edit = replace_text(cure.path, data, cure.line, cure.column, cure.old, cure.new)
+def _made(action: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
+    if isinstance(action, Declare):
+        tags = wanted.get((action.path, action.name), {action.tag})
+        return declare_dependency(data, action.name, _joint(action.tag, tags), action.path)
+    if isinstance(action, Remove):
+        return remove_dependency(data, action.name, action.tag, action.path)
+    if isinstance(action, Replace):
+        edit = replace_text(action.path, data, action.line, action.column, action.old, action.new)
         return (edit,) if edit else ()
-    if isinstance(cure, Insert):
-        edit = insert_lines(cure.path, data, cure.line, cure.text)
+    if isinstance(action, Insert):
+        edit = insert_lines(action.path, data, action.line, action.text)
         return (edit,) if edit else ()
-    return (cure,)
+    return (action,)
 
 
 def _joint(tag: str, tags: set[str]) -> str:

@@ -45,7 +45,7 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 )
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
-    # A package that leaves out many things it runs with is told of the first few.
+    # Of the many things that a package runs with and does not declare, the first few are reported.
     firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)

@@ -201,7 +201,7 @@ class StandardNames(msgspec.Struct, frozen=True):
 
 @cache
 def names() -> StandardNames:
-    """The names that are told of. Raises SnapshotError when the data cannot be read."""
+    """The names that are known. Raises SnapshotError when the data cannot be read."""
     import zstandard
 
     path = DATA / "std_names.json.zst"
@@ -214,11 +214,11 @@ def names() -> StandardNames:
 
 @cache
 def oldest() -> int:
-    """The first GCC that is told of name by name."""
+    """The first GCC whose headers are known name by name."""
     return min(map(int, names().gcc))
 
 
-# Headers of C that are told of: `cmath` is `math.h` as well.
+# Headers of C that are known: `cmath` is `math.h` as well.
 _C = frozenset(
     ("cstdint", "cfloat", "climits", "cmath", "cstdlib", "cstring", "cstdio", "cassert", "cerrno", "cinttypes",
      "csignal", "cstdarg")
@@ -241,13 +241,13 @@ def _places() -> dict[str, int]:
 
 
 def bit_of(name: str) -> int:
-    """The bit that stands for a name in named_by(); 0 for one that is not told of."""
+    """The bit that stands for a name in named_by(); 0 for one that is not known."""
     return _places().get(name, 0)
 
 
 @cache
 def named_by(header: str, gcc: int, standard: int) -> int | None:
-    """The names that a header brings alone, as bits; None for a header that is not told of.
+    """The names that a header brings alone, as bits; None for a header that is not known.
 
     gcc: major version; one that is not known is answered as the nearest older one, or the oldest. standard: year of the
     C++ standard, likewise.
