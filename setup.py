@@ -10,6 +10,7 @@ setup(
     package_data={f"rosimpact.{room}": ["py.typed"] for room in ROOMS}
     | {
         "rosimpact.impact.targets": ["data/*"],
+        "rosimpact.impact.rules": ["precision.json"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
         "rosimpact.impact.model.flow": ["*.toml"],
         "rosimpact.impact.report.graph": ["assets/*"],

@@ -3,8 +3,43 @@
 from collections.abc import Mapping
 from difflib import get_close_matches
 from itertools import groupby
+from pathlib import Path
+
+import msgspec
 
 from .rule import Rule, groups
+
+PRECISION = Path(__file__).with_name("precision.json")
+
+
+class Judged(msgspec.Struct, frozen=True):
+    """The findings of a rule in one batch that readers judged by the sources, before the rule was changed because of
+    them. repositories: how many they are in. right: those that were right, also ones of targets or builds that hardly
+    anybody has. badly_said: there is a fault, but the text misleads."""
+
+    batch: str
+    repositories: int
+    findings: int
+    right: int
+    badly_said: int
+
+
+def read_precision() -> dict[str, list[Judged]]:
+    """How the findings of each rule were judged, batch by batch, from what `benchmarks/verdicts.py precision` wrote."""
+    return msgspec.json.decode(PRECISION.read_bytes(), type=dict[str, list[Judged]])
+
+
+def describe_precision(judged: list[Judged]) -> str:
+    """The paragraph on how many findings of a rule were right."""
+    if not judged:
+        return "Precision at first sight\n    No finding of this rule was judged yet."
+    lines = []
+    for row in judged:
+        rest = f", {row.badly_said} badly said" if row.badly_said else ""
+        lines.append(
+            f"    {row.batch}: {row.right} of {row.findings} findings right{rest} (repositories: {row.repositories})"
+        )
+    return "\n".join(("Precision at first sight", *lines))
 
 
 def summarize(rule: Rule) -> str:
@@ -32,7 +67,8 @@ def explain(name: str, rules: Mapping[str, Rule]) -> str:
     others = [rule for rule in members if rule.name != name]
     listed = "\n".join(f"    {rule.name}: {summarize(rule)}" for rule in others)
     if name in rules:
-        documentation = rules[name].documentation.rstrip()
+        own = read_precision().get(name, [])
+        documentation = f"{rules[name].documentation.rstrip()}\n\n{describe_precision(own)}"
         return f"{documentation}\n\nThe name also stands for\n{listed}" if others else documentation
     if others:
         return f"{name}: a group of rules.\n\nThe name stands for\n{listed}"

@@ -1,0 +1,188 @@
+"""Findings of `check` on a batch's repositories that a reader judged by the sources: drawn, asked again, counted.
+
+Beside a batch (see first_sight.py) lie its verdicts, one record for each judged finding:
+    NAME.verdicts.jsonl   every error on the release trees (repo, tag, distro, ...)
+    NAME.heads.jsonl      findings drawn on the newest commits (repo, commit, ...)
+with rule, severity, package, path, line, subject, verdict ("true", "true-but-latent": of another target or a build that
+the farm does not make, "badly said": the fault is there, the text misleads, "false"), why (one clause) and class.
+
+usage: verdicts.py draw --batch NAME --clones FOLDER --out FILE [--number 100] [--share-errors 0.5] [--seed N]
+       verdicts.py recheck --clones FOLDER [--batch NAME] [--jobs 2]
+       verdicts.py precision FILE
+
+`draw`: checks the newest commit of each repository with the targets that a user gets who names none, and draws errors
+and warnings, of a repository and rule at most two. A repository that is a subject of the batch's breaks is a head like
+any other. `recheck`: checks what the verdicts are about again; exits with 1 if a finding that was judged false is back,
+and names the true ones that are gone. `precision`: writes the table that `rosimpact explain` reads.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import first_sight
+import mining
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
+
+RIGHT = frozenset(("true", "true-but-latent"))
+PER_RULE = 2
+
+
+def check_commit(job: tuple[mining.Clone, str, tuple[str, ...]]) -> list[dict]:
+    """What `check` says of a commit of a clone: its errors and warnings, with repo and commit. job: the clone, the
+    commit and the targets. A check that fails says nothing; its reason is printed."""
+    clone, commit, targets = job
+    report = check(str(clone.folder), Options(targets=targets, rev=commit, jobs=1))
+    if report.failure:
+        print(f"{clone.name}: {report.failure}", file=sys.stderr)
+        return []
+    told = ("rule", "severity", "package", "path", "line", "subject", "message", "targets")
+    found = (finding._asdict() for finding in report.findings)
+    return [
+        {"repo": clone.name, "commit": commit, **{name: finding[name] for name in told}}
+        for finding in found
+        if finding["severity"] in ("error", "warning")
+    ]
+
+
+def choose(findings: Iterable[dict], number: int, share_errors: float, seed: int) -> list[dict]:
+    """`number` findings at random, `share_errors` of them errors as far as there are any, at most two of one rule in
+    one repository, in an order that puts those of one repository together."""
+    chance = random.Random(seed)
+    ordered = sorted(findings, key=lambda f: (f["repo"], f["rule"], f["path"], f["line"], str(f["subject"])))
+    chance.shuffle(ordered)
+    taken: Counter[tuple[str, str]] = Counter()
+    kept: dict[str, list[dict]] = defaultdict(list)
+    for finding in ordered:
+        key = finding["repo"], finding["rule"]
+        if taken[key] < PER_RULE:
+            taken[key] += 1
+            kept[finding["severity"]].append(finding)
+    errors = kept["error"][: round(number * share_errors)]
+    chosen = errors + kept["warning"][: number - len(errors)]
+    return sorted(chosen, key=lambda f: (f["repo"], f["rule"], f["path"], f["line"]))
+
+
+def judged(batches: Path, only: str = "") -> list[dict]:
+    """The records of all verdicts, or of one batch, each with its batch."""
+    found = []
+    for file in sorted(batches.glob("*.jsonl")):
+        batch, _, kind = file.name.removesuffix(".jsonl").rpartition(".")
+        if kind in ("verdicts", "heads") and (not only or batch == only):
+            found += [{"batch": batch, "severity": "error", **row} for row in first_sight.read_records(file)]
+    return found
+
+
+def compare(records: Sequence[dict], said: Iterable[dict]) -> tuple[list[dict], list[dict]]:
+    """Of the verdicts on one tree: those judged false that are said again, and right ones that are said no more. A
+    finding is the same if rule, path and subject are, with a severity as high."""
+    now: dict[tuple, str] = {(f["rule"], f["path"], f["subject"]): f["severity"] for f in said}
+    again = []
+    gone = []
+    for record in records:
+        severity = now.get((record["rule"], record["path"], record["subject"]), "")
+        if record["verdict"] == "false" and severity and (severity == "error" or record["severity"] == "warning"):
+            again.append(record)
+        elif record["verdict"] in RIGHT and not severity:
+            gone.append(record)
+    return again, gone
+
+
+def count_precision(records: Iterable[dict]) -> dict[str, list[dict]]:
+    """By rule, a row for each batch as `rosimpact explain` reads them: how many findings were judged, how many of them
+    were right, and in how many repositories they were."""
+    rules: dict[tuple[str, str], list[dict]] = defaultdict(list)
+    for record in records:
+        rules[record["rule"], record["batch"]].append(record)
+    counted: dict[str, list[dict]] = defaultdict(list)
+    for (rule, batch), rows in sorted(rules.items()):
+        counted[rule].append(
+            {
+                "batch": batch,
+                "repositories": len({row["repo"] for row in rows}),
+                "findings": len(rows),
+                "right": sum(row["verdict"] in RIGHT for row in rows),
+                "badly_said": sum(row["verdict"] == "badly said" for row in rows),
+            }
+        )
+    return dict(counted)
+
+
+def _list_jobs(clones: Sequence[mining.Clone], records: Iterable[dict]) -> list[tuple[tuple, list[dict]]]:
+    """The trees that verdicts are about with their records, as far as their clones are here."""
+    by_name = {clone.name.lower(): clone for clone in clones}
+    trees: dict[tuple[str, str, tuple[str, ...]], list[dict]] = defaultdict(list)
+    for record in records:
+        targets = (record["distro"],) if record.get("distro") else ()
+        trees[record["repo"], record.get("commit") or record["tag"], targets].append(record)
+    return [
+        ((by_name[repo.lower()], revision, targets), rows)
+        for (repo, revision, targets), rows in trees.items()
+        if repo.lower() in by_name
+    ]
+
+
+def recheck(clones: Path, batch: str, jobs: int) -> int:
+    records = judged(first_sight.BATCHES, batch)
+    trees = _list_jobs(mining.find_clones(clones, sorted({record["repo"] for record in records})), records)
+    back = 0
+    with ProcessPoolExecutor(jobs) as pool:
+        for (_, rows), said in zip(trees, pool.map(check_commit, [job for job, _ in trees]), strict=True):
+            again, gone = compare(rows, said)
+            back += len(again)
+            for word, found in (("false and back", again), ("right and gone", gone)):
+                for row in found:
+                    print(f"{word}: {row['repo']} {row['path']}:{row['line']} {row['rule']} {row['subject']}")
+    asked = sum(len(rows) for _, rows in trees)
+    print(f"{asked} of {len(records)} findings asked again, {back} that were judged false are back")
+    return 1 if back else 0
+
+
+def draw(args: argparse.Namespace) -> None:
+    names = first_sight.read_names([first_sight.BATCHES / f"{args.batch}.repos.txt"])
+    clones = mining.find_clones(args.clones, names)
+    heads = [(c, first_sight.run_git(c.folder, "rev-parse", "HEAD").strip(), ()) for c in clones]
+    found: list[dict] = []
+    with ProcessPoolExecutor(args.jobs) as pool:
+        for said in pool.map(check_commit, heads):
+            found += said
+    chosen = choose(found, args.number, args.share_errors, args.seed)
+    first_sight.write_records(args.out, chosen)
+    severities = Counter(finding["severity"] for finding in found)
+    print(f"{len(chosen)} of {severities['error']} errors and {severities['warning']} warnings in {len(heads)} heads")
+
+
+def main(given: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    drawn, again = commands.add_parser("draw"), commands.add_parser("recheck")
+    for command in (drawn, again):
+        command.add_argument("--clones", type=Path, required=True)
+        command.add_argument("--batch", required=command is drawn, default="")
+        command.add_argument("--jobs", type=int, default=2)
+    drawn.add_argument("--out", type=Path, required=True)
+    drawn.add_argument("--number", type=int, default=100)
+    drawn.add_argument("--share-errors", type=float, default=0.5)
+    drawn.add_argument("--seed", type=int, default=first_sight.SEED)
+    commands.add_parser("precision").add_argument("file", type=Path)
+    args = parser.parse_args(given)
+    if args.command == "draw":
+        draw(args)
+    elif args.command == "recheck":
+        return recheck(args.clones, args.batch, args.jobs)
+    else:
+        counted = count_precision(judged(first_sight.BATCHES))
+        args.file.write_text(json.dumps(counted, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
