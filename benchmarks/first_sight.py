@@ -44,7 +44,7 @@ ROOT = Path(__file__).parents[1]
 LEDGER = Path(__file__).with_name("first_sight.jsonl")
 BATCHES = Path(__file__).with_name("batches")
 SEED = 20261123
-_UNWANTED = ("-release", "-gbp", "_vendor")
+_UNWANTED = ("-release", "_release", "-gbp", "_vendor")
 
 
 def read_names(files: Iterable[Path]) -> list[str]:
@@ -75,7 +75,7 @@ def draw(distros: Path, excluded: Iterable[str], number: int, share_ros2: float,
                 generations[name[1]].add(1 if file.parent.name in mining.ROS1 else 2)
                 if entry.get("release"):
                     releases.add(name[1])
-    seen = {name.lower().split("/")[1] for name in excluded}
+    seen = {name.lower().rpartition("/")[2] for name in excluded}
     names = sorted(releases)
     ros2 = [name for name in names if 2 in generations[name]]
     ros1 = [name for name in names if 2 not in generations[name]]
