@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import quote
 
 import msgspec
 import zstandard
@@ -23,7 +24,7 @@ from ..impact.facts.surface import Entity, HeaderSurface
 from ..impact.targets.surface import includes as surface_includes
 from ..impact.targets.surface.changes import PARAMETER, Line, unpack
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
-from ..impact.targets.surface.store import About, Stored, SurfaceHistory
+from ..impact.targets.surface.store import About, Stored, StoredSurfacesError, SurfaceHistory
 
 if TYPE_CHECKING:
     from ..impact.targets.surface.surface import Surface
@@ -194,6 +195,20 @@ _ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
 _BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
 Packages = Mapping[tuple[str, int], Packed]
 """Packed packages by name and ROS generation."""
+
+
+def read_packages(file: Path) -> tuple[dict[tuple[str, int], Packed], tuple[str, ...]]:
+    """The packed packages of a file, and the distros that it was made of. Raises StoredSurfacesError when it cannot be
+    read."""
+    try:
+        with closing(sqlite3.connect(f"file:{quote(str(file))}?mode=ro", uri=True)) as db:
+            rows = db.execute("SELECT name, ros, data, changes, includes FROM package")
+            packages = {(name, ros): Packed(*packed) for name, ros, *packed in rows}
+            (distros,) = db.execute("SELECT distros FROM about").fetchone()
+    except sqlite3.Error as error:
+        message = f"{file}: no file of surfaces ({error}); `rosimpact surface build` makes one"
+        raise StoredSurfacesError(message) from error
+    return packages, tuple(distros.split())
 
 
 def write(file: Path, packages: Packages, distros: Sequence[str] = (), date: str = "") -> About:

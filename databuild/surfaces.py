@@ -23,7 +23,7 @@ from ..impact.targets.surface.store import SurfaceHistory
 from ..impact.targets.version import parts
 from .jobs import Job, Result, Wanted, run
 from .surface.clones import Clone, Clones, Release, Version
-from .surface_file import Packed, write
+from .surface_file import Packed, read_packages, write
 
 Versions = Literal["newest", "all"]
 """Which versions are read: those that distros have, or all that they ever had."""
@@ -157,11 +157,14 @@ def build(
     *,
     versions: Versions = "newest",
     dask: str | None = None,
+    onto: Path | None = None,
 ) -> BuiltSurfaces:
-    """Reads what is asked for, as plan() has it, and writes it. jobs: processes, all cores when None. progress: called
-    with (clone, done, total). dask: address of a scheduler whose workers do the jobs instead. What was done stays in
-    `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises TargetError,
-    OSError, and ClusterError."""
+    """Reads what is asked for, as plan() has it, and writes it. onto: a file of surfaces whose packages are written
+    too; of a package that is read now, the history that has more versions. jobs: processes, all cores when None.
+    progress: called with (clone, done, total). dask: address of a scheduler whose workers do the jobs instead. What was
+    done stays in `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises
+    TargetError, OSError, StoredSurfacesError, and ClusterError."""
+    written, older = read_packages(onto) if onto else ({}, ())
     todo, missing = plan(clones, distros, packages, versions)
     work = output.with_name(f"{output.name}.work")
     for file in (output, work):
@@ -187,19 +190,24 @@ def build(
                 db.commit()
                 if progress is not None:
                     progress(job.name, number, len(todo))
-        written: dict[tuple[str, int], Packed] = {}
         for key in keys:
-            for package, ros, *packed in db.execute(
+            for package, ros, *columns in db.execute(
                 "SELECT package, ros, data, changes, includes FROM part WHERE key = ?", (key,)
             ):
-                written[package, ros] = Packed(*packed)
+                packed, stored = Packed(*columns), written.get((package, ros))
+                if stored is None or _count_versions(package, packed) >= _count_versions(package, stored):
+                    written[package, ros] = packed
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
-    about = write(output, written, distros, default().date)
+    about = write(output, written, list(dict.fromkeys((*older, *distros))), default().date)
     work.unlink()
     histories = (SurfaceHistory(package, packed.data, packed.includes) for (package, _), packed in written.items())
     approximate = {history.package for history in histories if history.approximate}
     return BuiltSurfaces(about.packages, about.versions, missing, len(approximate), tuple(failed))
+
+
+def _count_versions(package: str, packed: Packed) -> int:
+    return len(SurfaceHistory(package, packed.data, packed.includes).versions)
 
 
 def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:

@@ -401,6 +401,9 @@ def surface_build(
         bool,
         typer.Option("--all-versions", help="Read all versions that the distros ever had, not only the current ones."),
     ] = False,
+    onto: Annotated[
+        Path | None, typer.Option(help="Also write what this file has of packages, where clones have no more versions.")
+    ] = None,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
     dask: Annotated[
         str | None, typer.Option(help="Use the cluster of this Dask scheduler, such as tcp://host:8786.")
@@ -413,7 +416,7 @@ def surface_build(
     raise typer.Exit(
         command.surface_build(
             distros=_names(distro), repos=repos, packages=_names(packages), all_versions=all_versions, output=output,
-            jobs=jobs, dask=dask, quiet=quiet,
+            onto=onto, jobs=jobs, dask=dask, quiet=quiet,
         )
     )  # fmt: skip
 

@@ -63,7 +63,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     return _of_surfaces(answer, format, output)
 
 
-def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask, quiet) -> int:
+def surface_build(*, distros, repos, packages, all_versions, output, onto, jobs, dask, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
@@ -77,7 +77,8 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
         check_output(output, "")
         report = None if quiet else steps()
         versions = "all" if all_versions else "newest"
-        built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask)
+        names = all_distros(distros)
+        built = build(Clones(repos), names, output, packages, jobs, report, versions=versions, dask=dask, onto=onto)
         if not built.packages:
             raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
         say_notes(built.failed)

@@ -10,7 +10,7 @@ from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import all_distros, build, plan
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 from rosimpact.impact.targets.surface.changes import unpack
-from rosimpact.impact.targets.surface.store import SurfaceHistory, Surfaces
+from rosimpact.impact.targets.surface.store import StoredSurfacesError, SurfaceHistory, Surfaces
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
 <maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>{made_by}</buildtool_depend>
@@ -80,6 +80,21 @@ def test_what_is_written(clones, tmp_path):
     assert [path.name for path in file.parent.iterdir()] == ["surfaces.sqlite"]
     # Packages of the same repositories that this clone does not have are told.
     assert any(line.startswith("rclcpp_action ") for line in built.failed)
+
+
+def test_packages_of_another_file_are_written_too(clones, tmp_path):
+    """A package that both have keeps the history with more versions."""
+    first, second = tmp_path / "first.sqlite", tmp_path / "second.sqlite"
+    build(clones, ("humble", "jazzy"), first, ("rclcpp",), jobs=1)
+    built = build(clones, ("humble",), second, jobs=1, onto=first)
+    assert (built.packages, built.versions) == (2, 3)
+    written = Surfaces(second)
+    assert len(written.history("rclcpp", 2).versions) == 2
+    assert len(written.history("cv_bridge", 2).versions) == 1
+    assert written.about.distros == "humble jazzy"
+    (tmp_path / "text").write_text("no file of surfaces")
+    with pytest.raises(StoredSurfacesError, match=r"text: no file of surfaces .*surface build"):
+        build(clones, ("humble",), second, jobs=1, onto=tmp_path / "text")
 
 
 def test_processes_give_the_same(clones, tmp_path):
