@@ -23,6 +23,7 @@ from ...edges import processes
 from ...edges.limits import limits_stamp
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import version_of_all
+from ..facts.condition import Condition
 from ..facts.manifest import Manifest
 from ..source_keys import source_key
 from ..targets.surface.fields import snake
@@ -409,6 +410,18 @@ def link(
     return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread)
 
 
+def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
+    """The packages that a manifest declares under conditions alone, with the test that one of them holds."""
+    found: dict[str, list[str]] = {}
+    for dependency in manifest.dependencies:
+        found.setdefault(dependency.name, []).append(dependency.condition)
+    return {
+        name: Condition("manifest", " or ".join(f"({text})" for text in dict.fromkeys(texts)))
+        for name, texts in found.items()
+        if all(texts)
+    }
+
+
 def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in kinds))
 
@@ -626,6 +639,7 @@ class _Linker:
                 dependencies=_named(manifest, "build", "buildtool"),
                 test_dependencies=_named(manifest, "test"),
                 exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
+                conditional_dependencies=_list_conditional(manifest),
                 extras=self.extras,
             )
             if build_type_of(manifest, self.ros) != "ament_python"

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.conditions.cmake import Token
 from rosimpact.impact.facts.cmake import extract
+from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.cmake.build import Build, DeclaredPackages
 from rosimpact.impact.model.cmake.conditions import evaluate, version_key
 from rosimpact.impact.model.cmake.genex import reduced, rejoin
@@ -118,6 +119,21 @@ FOUND = [
     ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/../elsewhere)\nfind_package(A)\nendif()", ["A [EXISTS pkg/../elsewhere]"]),
     ("gz_find_package(A REQUIRED VERSION 1 PKGCONFIG a)", ["A"]),
 ]
+
+
+CONDITIONAL = [
+    ("ament_auto_find_build_dependencies()", ["rclcpp [($ROS_VERSION == 2)]", "tf2"]),
+    ("ament_auto_find_build_dependencies(REQUIRED rclcpp)", ["rclcpp", "tf2"]),
+    ("if(X)\nament_auto_find_build_dependencies()\nendif()", ["rclcpp [X & ($ROS_VERSION == 2)]", "tf2 [X]"]),
+    ("ament_lint_auto_find_test_dependencies()", ["ament_lint_common"]),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), CONDITIONAL)
+def test_what_is_declared_under_a_condition_is_found_under_it(source, expected):
+    conditions = {"rclcpp": Condition("manifest", "($ROS_VERSION == 2)")}
+    declared = dict(dependencies=("rclcpp", "tf2"), test_dependencies=("ament_lint_common",))
+    assert found(source, **declared, conditional_dependencies=conditions) == expected
 
 
 @pytest.mark.parametrize(("source", "expected"), FOUND)

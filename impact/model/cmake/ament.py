@@ -269,7 +269,8 @@ def ament_auto_find_build_dependencies(run: Interpreter, call: CommandCall, args
         run.add_found(FoundPackage(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
         run.extend(str(item), item.at)
     for name in names:
-        run.add_found(FoundPackage(name, "ament_auto", run.place(call.at), conditions=run.conditions))
+        conditions = run.declared.under(name, run.conditions)
+        run.add_found(FoundPackage(name, "ament_auto", run.place(call.at), conditions=conditions))
         run.extend(name, call.at)
 
 
@@ -306,9 +307,9 @@ def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word])
     if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:
         libraries = [made.name for made in run.automatic if made.kind == "library"]
         add_links(run, draft, [word(name, call.at) for name in libraries], "link")
-    add_links(run, draft, [word(dependency, call.at) for dependency in run.declared.build], "ament")
+    dependencies = run.declared.build + (run.declared.test if kind == "test" else ())
+    add_links(run, draft, [word(name, call.at, run.declared.under(name, ())) for name in dependencies], "ament")
     if kind == "test":
-        add_links(run, draft, [word(dependency, call.at) for dependency in run.declared.test], "ament")
         framework = f"ament_cmake_{call.name.rpartition('_')[2]}"
         run.add_found(FoundPackage(framework, "find_package", run.place(call.at), True, True, conditions=run.conditions,
                             via=call.name))  # fmt: skip
@@ -344,7 +345,8 @@ def ament_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) ->
         run.add_install("directory", (run.tree_path(item),), f"share/{package}", item)
     for dependency in run.declared.build:
         if dependency in run.declared.exported:
-            run.add_export(dependency, "ament_export_dependencies", call.at, run.conditions)
+            conditions = run.declared.under(dependency, run.conditions)
+            run.add_export(dependency, "ament_export_dependencies", call.at, conditions)
     ament_package(
         run, call, [item for item in args if item in ("CONFIG_EXTRAS",) or item in given.get("CONFIG_EXTRAS", [])]
     )
@@ -381,5 +383,6 @@ def _wrapper_standard(run: Interpreter, call: CommandCall, number: int) -> None:
 def ament_lint_auto_find_test_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_lint_auto_find_test_dependencies(): finds every declared test dependency."""
     for name in run.declared.test:
-        run.add_found(FoundPackage(name, "ament_lint_auto", run.place(call.at), conditions=run.conditions))
+        conditions = run.declared.under(name, run.conditions)
+        run.add_found(FoundPackage(name, "ament_lint_auto", run.place(call.at), conditions=conditions))
         run.extend(name, call.at)

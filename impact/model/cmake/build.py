@@ -1,6 +1,6 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import msgspec
 
@@ -214,10 +214,17 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
-    """What package.xml declares, as far as CMake reads it: see interpret()."""
+    """What package.xml declares, as far as CMake reads it: see interpret(). conditions: the condition of those that are
+    declared under one alone."""
 
     build: tuple[str, ...] = ()
     test: tuple[str, ...] = ()
     exported: tuple[str, ...] = ()
+    conditions: Mapping[str, Condition] = {}
+
+    def under(self, name: str, conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
+        """The conditions, and that of a declared package."""
+        own = self.conditions.get(name)
+        return conditions if own is None else (*conditions, own)
 
 

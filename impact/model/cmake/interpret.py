@@ -1,8 +1,9 @@
 """The CMake of one package interpreted without building it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from ...facts.cmake import CMakeFile
+from ...facts.condition import Condition
 from . import ament, catkin, find, install, language, lists, paths, targets
 from .build import Build, DeclaredPackages
 from .interpreter import Interpreter
@@ -26,6 +27,7 @@ def interpret(
     dependencies: tuple[str, ...] = (),
     test_dependencies: tuple[str, ...] = (),
     exported_dependencies: tuple[str, ...] | None = None,
+    conditional_dependencies: Mapping[str, Condition] | None = None,
     extras: Callable[[str], tuple[str, ...]] = _no_extras,
 ) -> Build:
     """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
@@ -37,13 +39,16 @@ def interpret(
     that another package of the workspace gives to those that find it, see extras_of().
 
     For ament_cmake_auto and ament_lint_auto, what package.xml declares: dependencies to build with (build and
-    buildtool), test_dependencies, and exported_dependencies (build_export, buildtool_export and exec; None counts all
-    of `dependencies` as exported).
+    buildtool), test_dependencies, exported_dependencies (build_export, buildtool_export and exec; None counts all of
+    `dependencies` as exported), and the conditions of conditional_dependencies, which nothing declares without one.
 
     Always returns; what could not be told or went beyond the bounds is in `unresolved`.
     """
     declared = DeclaredPackages(
-        dependencies, test_dependencies, dependencies if exported_dependencies is None else exported_dependencies
+        dependencies,
+        test_dependencies,
+        dependencies if exported_dependencies is None else exported_dependencies,
+        conditional_dependencies or {},
     )
     return Interpreter(package_path, read, exists, glob, package, declared, extras).run()
 
