@@ -432,16 +432,16 @@ def manifest_at(gathered: ExtractedFacts, path: str) -> Manifest | None:
 
 
 def generation(discovered: Discovered, gathered: ExtractedFacts) -> int:
-    """1 or 2: which ROS generation most packages of the tree are written for."""
-    two = 0
-    total = 0
-    for place in discovered.packages:
-        manifest = manifest_at(gathered, place.manifest_path)
-        if manifest is None:
-            continue
-        total += 1
-        tools = {d.name for d in manifest.dependencies if d.kind in ("buildtool", "build")}
-        types = {t for t, _ in manifest.build_types}
-        if any(t.startswith("ament") or t == "ros2" for t in tools | types):
-            two += 1
-    return 2 if two * 2 >= total and two else 1
+    """1 or 2: which ROS generation most packages of the tree are written for, 2 where none tells."""
+    manifests = (manifest_at(gathered, place.manifest_path) for place in discovered.packages)
+    told = [ros for manifest in manifests if manifest is not None and (ros := _generation_of(manifest))]
+    return 1 if told.count(2) * 2 < len(told) else 2
+
+
+def _generation_of(manifest: Manifest) -> int:
+    """1 or 2, what a manifest's build tools tell; 0 for plain CMake, which either may have. Packages for both are
+    taken to be written for 2."""
+    names = {d.name for d in manifest.dependencies} | {t for t, _ in manifest.build_types}
+    if any(name.startswith("ament") or name == "ros2" for name in names):
+        return 2
+    return 1 if "catkin" in names or not manifest.build_types else 0

@@ -21,9 +21,9 @@ import msgspec
 
 from ...edges import processes
 from ...edges.limits import limits_stamp
+from ..facts.condition import Condition
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import version_of_all
-from ..facts.condition import Condition
 from ..facts.manifest import Manifest
 from ..source_keys import source_key
 from ..targets.surface.fields import snake

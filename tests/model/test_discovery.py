@@ -5,7 +5,7 @@ import os
 import pytest
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.discovery import discover
+from rosimpact.impact.model.discovery import discover, generation
 from rosimpact.impact.tree import WorkingTree
 
 
@@ -16,8 +16,8 @@ def manifest(name):
     )
 
 
-def find(root, files):
-    """files: content by path; `->x` is a link."""
+def find(root, files, ask=discover):
+    """files: content by path; `->x` is a link. ask: what is asked of the files."""
     for path, text in files.items():
         place = root / "ws" / path
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -28,7 +28,9 @@ def find(root, files):
     (root / "ws").mkdir(exist_ok=True)
     tree = WorkingTree(root / "ws")
     with Store(root / "cache") as store:
-        return discover(tree, gather(tree, store, jobs=1))
+        gathered = gather(tree, store, jobs=1)
+        found = discover(tree, gathered)
+        return found if ask is discover else ask(found, gathered)
 
 
 A, B = manifest("a"), manifest("b")
@@ -259,3 +261,39 @@ def test_owners(tmp_path):
 def test_the_root_owns_everything_below_it(tmp_path):
     found = find(tmp_path, {"package.xml": A})
     assert [found.owner(path).name for path in ("", "x", "a/b/c")] == ["a"] * 3
+
+
+def of_build(*lines):
+    return manifest("x").replace("</package>", "".join(lines) + "</package>")
+
+
+CATKIN = of_build("<buildtool_depend>catkin</buildtool_depend>")
+AMENT = of_build("<buildtool_depend>ament_cmake</buildtool_depend>")
+PLAIN = of_build("<export><build_type>cmake</build_type></export>")
+PLAIN_TWO = of_build(
+    "<exec_depend condition='$ROS_VERSION == 2'>ament_cmake</exec_depend>",
+    "<export><build_type>cmake</build_type></export>",
+)
+PYTHON = of_build("<export><build_type>ament_python</build_type></export>")
+BOTH = of_build("<buildtool_depend>catkin</buildtool_depend><buildtool_depend>ament_cmake</buildtool_depend>")
+
+
+@pytest.mark.parametrize(
+    ("manifests", "expected"),
+    [
+        ([CATKIN], 1),
+        ([manifest("x")], 1),
+        ([AMENT], 2),
+        ([PYTHON], 2),
+        ([BOTH], 2),
+        ([PLAIN], 2),
+        ([PLAIN_TWO], 2),
+        ([CATKIN, PLAIN], 1),
+        ([CATKIN, PLAIN_TWO], 2),
+        ([CATKIN, CATKIN, AMENT], 1),
+        ([CATKIN, AMENT], 2),
+    ],
+)
+def test_the_generation_is_that_of_most_packages_that_tell_one(manifests, expected, tmp_path):
+    files = {f"p{at}/package.xml": text for at, text in enumerate(manifests)}
+    assert find(tmp_path, files, generation) == expected

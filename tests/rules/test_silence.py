@@ -85,6 +85,18 @@ FLOE_DEPENDS = (
 )
 
 SILENT = {
+    "components that a macro which cannot be read may ask for": Silent(
+        "unlinked-boost",
+        ("humble",),
+        ament(
+            "include(cmake/macros.cmake)\nfind_package(Boost REQUIRED)\n"
+            "add_project_dependency(Boost COMPONENTS thread)\nadd_library(sled sled.cpp)\n"
+            "target_link_libraries(sled Boost::thread)",
+            "libboost-dev",
+            sled_cpp="#include <boost/thread.hpp>\n",
+        ),
+        ("CMakeLists.txt", "include(cmake/macros.cmake)\n", ""),
+    ),
     "a header chosen by __has_include": Silent(
         "removed-header",
         ("humble", "jazzy"),

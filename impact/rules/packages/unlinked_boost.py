@@ -21,7 +21,8 @@ Use instead
     target_link_libraries(logger Boost::filesystem)
 
 Not reported
-    Headers that need no library in the target's version; targets that are given something that cannot be seen.
+    Headers that need no library in the target's version; targets that are given something that cannot be seen;
+    components that are not asked for where a part of the package's CMake cannot be read.
 """
 
 from collections.abc import Iterator, Set
@@ -48,7 +49,7 @@ _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component
 )
 def unlinked_boost(view: TargetView, package: Package):
     asked = list_asked_components(view, package)
-    if asked is not None:
+    if asked is not None and not package.build.unresolved:  # what cannot be read may ask for more
         yield from _list_not_asked_for(view, package, asked)
     yield from _list_unlinked(view, package, asked or frozenset())
 
