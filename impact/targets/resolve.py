@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import difflib
 import os
 import posixpath
 import re
@@ -18,8 +19,8 @@ from ..config import check_inside, lies_in
 from ..tree.ignore import git_folder
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import KnownDistro, known_distros
-from .platform import CODENAMES, normal_platform
+from .distro.known import KnownDistro, known_distros, systems_of_rosdep
+from .platform import CODENAMES, library_name, normal_platform
 from .snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -29,6 +30,12 @@ if TYPE_CHECKING:
 __all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
 
 _DPKG = ".dpkg.txt"
+_OTHER_SYSTEMS = frozenset(("conda", "robostack", "macos", "windows"))
+"""Systems that ROS runs on and rosdep has no rules for."""
+_OTHER_RELEASES = frozenset(("sid", "unstable", "testing", "stable", "oldstable", "devel", "artful", "cosmic", "disco",
+                             "eoan", "groovy", "hirsute", "impish", "kinetic", "lunar", "mantic", "oracular", "plucky",
+                             "questing", "saucy", "utopic", "vivid", "wily", "yakkety", "zesty"))  # fmt: skip
+"""Releases of Debian by role, and of Ubuntu between the long-term ones. Source: releases.ubuntu.com."""
 _DOCKER = "docker:"
 _DATE = re.compile(r"\d{4}-\d\d?-\d\d?$")
 _LARGEST = 200_000
@@ -72,8 +79,6 @@ def parse_target(
 
 
 def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
-    import difflib
-
     distros = [known.name for known in known_distros(data)]
     close = difflib.get_close_matches(base, [*distros, *named], 1)
     hint = f"; did you mean `{close[0]}`?" if close else "."
@@ -109,15 +114,44 @@ def _configured(
         if config.path:
             check_inside(folder / file, config, f"{where} `file`")
         base = parse_target(file, None, folder, data)
+        _check_table(where, platform, versions, data)
         return base.changed(date=date, platform=platform, versions=versions, name=asked)
     distro = table.get("distro", "")
     if "@" in distro:
         distro, _, written = distro.partition("@")
         date = date or written
+    _check_table(where, platform, versions, data)
     try:
         return DistroTarget(distro, date, platform, versions, asked, data)
     except TargetError as error:
         raise TargetError(f"{where}: {error}") from None
+
+
+def _check_table(where: str, platform: str | None, versions: Mapping[str, str], data: Snapshot | None) -> None:
+    """Raises TargetError for a platform, or a name in `versions`, that nobody knows."""
+    data = data or snapshots.default()
+    known = data.names("package") | data.names("library")
+    for name in versions:
+        if name not in known and library_name(name) not in known:
+            hint = _did_you_mean(name, known) or "a ROS package or a platform library is meant"
+            raise TargetError(f"{where}: `versions` has an unknown name `{visible(name)}`; {hint}")
+    words = normal_platform(platform or "").split()
+    if not words:
+        return
+    systems = systems_of_rosdep(data) | _OTHER_SYSTEMS
+    releases = {name.split()[1] for name in CODENAMES.values()} | _OTHER_RELEASES
+    if words[0] not in systems:
+        hint = _did_you_mean(words[0], systems | releases) or f"known systems: {', '.join(sorted(systems))}"
+    elif words[0] in ("ubuntu", "debian") and words[1:2] and words[1].isalpha() and words[1] not in releases:
+        hint = _did_you_mean(words[1], releases) or f"known releases: {', '.join(sorted(releases))}"
+    else:
+        return
+    raise TargetError(f"{where}: unknown platform `{visible(str(platform))}`; {hint}")
+
+
+def _did_you_mean(name: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, sorted(known), 1)
+    return f"did you mean `{close[0]}`?" if close else ""
 
 
 def _captured(path: Path, text: str) -> DistroTarget:

@@ -166,6 +166,10 @@ class Target(Protocol):
         """True when rosdep has, or had, a key of this name for any platform."""
         ...
 
+    def has_rosdep_rules(self) -> bool:
+        """True when rosdep knows the platform's operating system, so that a key without a rule cannot be installed."""
+        ...
+
     def library(self, name: str) -> str | None:
         """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
         ...

@@ -358,3 +358,11 @@ def test_the_newest_long_term_distro(text, distro):
 def test_build_type(text, package, here, near):
     machine = target(text)
     assert (machine.build_type(package), machine.similar_build_type(package)) == (here, near)
+
+
+@pytest.mark.parametrize(
+    ("platform", "expected"),
+    [(None, True), ("fedora 41", True), ("debian sid", True), ("conda-forge", False), ("macos", False)],
+)
+def test_rosdep_says_nothing_of_systems_that_it_does_not_know(platform, expected):
+    assert DistroTarget("jazzy", platform=platform).has_rosdep_rules() is expected

@@ -25,6 +25,8 @@ from rosimpact.impact.targets.providers.providers import default_providers
         ("boost/regex.hpp", "1.83", None),
         ("boost/asio.hpp", "1.65", "system"),
         ("boost/asio.hpp", "1.71", None),
+        ("boost/asio.hpp", "", None),
+        ("boost/thread.hpp", "", "thread"),
         ("boost/thread/mutex.hpp", "1.65", "thread"),
         ("boost/thread/mutex.hpp", "1.71", None),
         ("boost/thread.hpp", "1.71", "thread"),

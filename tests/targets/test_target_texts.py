@@ -1,6 +1,7 @@
 """What a person writes after --target, and what stands when nothing is written."""
 
 import os
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -51,6 +52,34 @@ def test_a_text_gives_a_target(text, distro, date, platform):
     found = parse_target(text, CONFIG)
     assert (found.distro, found.platform, found.name) == (distro, platform, text.strip())
     assert date is None or found.date == date
+
+
+TABLES = [
+    ({"platform": "ubuntu nobel"}, "unknown platform `ubuntu nobel`; did you mean `noble`?"),
+    ({"platform": "nobel"}, "unknown platform `nobel`; did you mean `noble`?"),
+    ({"platform": "ubunto 24.04"}, "unknown platform `ubunto 24.04`; did you mean `ubuntu`?"),
+    ({"platform": "solaris"}, "unknown platform `solaris`; known systems: alpine, "),
+    ({"versions": {"opencvv": "4.9"}}, "`versions` has an unknown name `opencvv`; did you mean `opencv`?"),
+    ({"versions": {"nav2_costmap2d": "1.3"}}, "an unknown name `nav2_costmap2d`; did you mean `nav2_costmap_2d`?"),
+    ({"versions": {"\x1b[1m": "1"}}, "; a ROS package or a platform library is meant"),
+    ({"platform": "ubuntu 25.10"}, ""),
+    ({"platform": "Debian sid"}, ""),
+    ({"platform": "fedora 41"}, ""),
+    ({"platform": "conda-forge"}, ""),
+    ({"platform": "robostack"}, ""),
+    ({"versions": {"OpenCV": "4.9", "qt5": "5.15", "nav2_costmap_2d": "1.3"}}, ""),
+]
+
+
+@pytest.mark.parametrize(("table", "expected"), TABLES)
+def test_a_table_with_names_that_nobody_knows_is_an_error(table, expected):
+    config = Config(targets={"robot": {"distro": "jazzy", **table}})
+    if not expected:
+        assert parse_target("robot", config).name == "robot"
+        return
+    with pytest.raises(TargetError, match=re.escape(expected)) as raised:
+        parse_target("robot", config)
+    assert "[targets.robot]" in str(raised.value) and "\x1b" not in str(raised.value)
 
 
 def test_a_configured_target_takes_its_versions():

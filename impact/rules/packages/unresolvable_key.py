@@ -67,6 +67,8 @@ def unresolvable_key(view: TargetView, package: Package):
         guess = guess if guess and view.available(guess) else None
         at = view.manifest_place(package, dependency)
         if target.known_key(name):
+            if not target.has_rosdep_rules():
+                continue
             data = {"platform": target.platform, "replacement": guess or ""}
             yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
         elif guess:

@@ -24,7 +24,7 @@ from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
 from ..version import number_of
-from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros
+from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
 from .rosdep import decode_rule, resolve_rule, split_platform
 
 if TYPE_CHECKING:
@@ -517,6 +517,9 @@ class DistroTarget(Target):
 
     def known_key(self, key: str) -> bool:
         return key in self._rules or key in self._data.names("rule", "key")
+
+    def has_rosdep_rules(self) -> bool:
+        return split_platform(self.platform)[0] in systems_of_rosdep(self._data) or bool(self._rules)
 
     def key_names(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""

@@ -95,3 +95,14 @@ def end_of_day(day: str) -> int:
 def _upstream(version: str) -> str:
     """`1.2.3-0` → `1.2.3`: the part after the dash counts the packaging."""
     return version.partition("-")[0]
+
+
+_FEW_RULES = 100
+"""Keys with a rule that an operating system has at least; rosdep's files also hold misspelt names of systems."""
+
+
+@functools.lru_cache(maxsize=4)
+def systems_of_rosdep(data: Snapshot) -> frozenset[str]:
+    """The operating systems that rosdep has rules for."""
+    counted = data.rows("SELECT os, count(DISTINCT key) FROM rule GROUP BY os")
+    return frozenset(name for name, keys in counted if keys >= _FEW_RULES and name != "*")

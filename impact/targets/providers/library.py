@@ -64,12 +64,12 @@ _COMPILED_HEADERS = (
 
 def compiled_component(header: str, version: str) -> str | None:
     """The compiled Boost library that code with this include needs to be linked to in a Boost version, None when it is
-    headers alone or not known."""
+    headers alone or not known. version: empty where it is not known, which counts as the newest."""
     if not header.startswith("boost/"):
         return None
     for start, component, until in _COMPILED_HEADERS:
         if header.startswith(start):
-            return None if until and version and at_least(version, until) else component
+            return None if until and (not version or at_least(version, until)) else component
     return None
 
 
