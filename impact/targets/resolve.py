@@ -8,7 +8,7 @@ import os
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +17,7 @@ from ...edges.console import visible
 from ...edges.limits import limits
 from ..config import check_inside, lies_in
 from ..tree.ignore import git_folder
+from ..tree.paths import is_vendored
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
 from .distro.known import KnownDistro, known_distros, systems_of_rosdep
@@ -260,10 +261,14 @@ def _docker(text: str, data: Snapshot | None) -> DistroTarget:
 _CI_FILE = re.compile(
     r"(?:^|/)(?:\.github/workflows/[^/]+\.ya?ml|\.gitlab-ci\.ya?ml|\.gitlab/[^/]+\.ya?ml|\.travis\.ya?ml"
     r"|\.circleci/config\.ya?ml|azure-pipelines\.ya?ml|Jenkinsfile|\.devcontainer/(?:[^/]+/)?devcontainer\.json"
-    r"|(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*)?|(?:docker-)?compose\.ya?ml)$"
+    r"|(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*)?|(?:docker-)?compose\.ya?ml|pixi\.toml)$"
 )
+_AT_ROOT = re.compile(r"(?:\.github|\.gitlab-ci|\.gitlab|\.travis|\.circleci|azure-pipelines|Jenkinsfile)(?=[/.]|$)")
+"""What CI services read at the root of a repository alone."""
+_REPOSITORY_FILE = re.compile(r"\.(?:repos|rosinstall)$")
+_BRANCH = re.compile(r"\bversion[\"']?\s*:\s*[\"']?([\w./-]+)")
 _COMMENT = re.compile(r"^\s*(?:#|//).*|\s#\s.*")
-_SAYS_ROS = re.compile(r"(?i)ros|distro")
+_SAYS_ROS = re.compile(r"(?i)ros|distro|robostack")
 _ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
 
 
@@ -298,32 +303,40 @@ def default_distros(
 ) -> tuple[tuple[str, ...], str]:
     """Distros to check against when nobody said any, and the reason as a clause.
 
-    ros: generation of the workspace, 1 or 2. texts: (repository, path, text) of CI files and Dockerfiles. branches:
-    (repository, branch). today: ISO day that tells which distros have ended, the data's day.
+    ros: generation of the workspace, 1 or 2. texts: (repository, path, text) of CI files, Dockerfiles, pixi.toml, and
+    files that list repositories (.repos, .rosinstall). branches: (repository, branch). today: ISO day that tells which
+    distros have ended, the data's day.
 
     The sourced environment comes first; then what the workspace's repositories name in their files, else in their
-    branches: those distros that most repositories name, at most four of them, and no ended one beside a living one; at
-    last the newest long-term distro of the generation.
+    branches and in those of the repositories that they list: those distros that most repositories name, at most four of
+    them, and no ended one beside a living one; at last the newest long-term distro of the generation. A repository
+    inside another, which is somebody else's there, counts where the outer one names none.
     """
     fitting = {known.name: known for known in distros if known.ros == ros}
     sourced = environment.get("ROS_DISTRO", "")
     if sourced in fitting:
         return (sourced,), "the sourced environment (ROS_DISTRO)"
     named: dict[str, dict[str, str]] = {}
+    by_branch: dict[str, dict[str, str]] = {}
     for repository, path, text in texts:
+        if _REPOSITORY_FILE.search(path):
+            for distro in _list_distros(" ".join(_BRANCH.findall(text)), fitting):
+                by_branch.setdefault(repository, {}).setdefault(distro, path)
+            continue
         for distro in distros_named(text, fitting):
             named.setdefault(repository, {}).setdefault(distro, path)
+    named = _without_inner(named)
 
     def lives(distro: str) -> bool:
         return not fitting[distro].end_of_life or fitting[distro].end_of_life > today
 
     if not any(lives(distro) for found in named.values() for distro in found):
         # CI files of long ended distros are often left behind; a branch says what is meant now.
-        by_branch: dict[str, dict[str, str]] = {}
         for repository, branch in branches:
-            for word in re.findall(r"[a-z]+", branch.lower()):
-                if word in fitting:
-                    by_branch.setdefault(repository, {}).setdefault(word, f"branch {branch}")
+            own = {distro: f"branch {branch}" for distro in _list_distros(branch, fitting)}
+            if own:  # says more than the branches of what it depends on
+                by_branch[repository] = own
+        by_branch = _without_inner(by_branch)
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
     old: list[str] = []
@@ -347,6 +360,19 @@ def default_distros(
         why = f"since {', '.join(old)} ended long ago"
         return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, {why}"
     return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
+
+
+def _list_distros(text: str, distros: Container[str]) -> list[str]:
+    return [word for word in re.findall(r"[a-z]+", text.lower()) if word in distros]
+
+
+def _without_inner(named: dict[str, dict[str, str]]) -> dict[str, dict[str, str]]:
+    """What repositories name without those that lie inside another of them."""
+    return {
+        folder: found
+        for folder, found in named.items()
+        if not any(other != folder and (not other or folder.startswith(f"{other}/")) for other in named)
+    }
 
 
 def _newest_lts(distros: Sequence[KnownDistro], ros: int) -> str:
@@ -383,25 +409,36 @@ def _chosen(
         return tuple(Chosen(parse_target(text, config, folder, data), reason) for text in config.default_targets)
     known = known_distros(data)
     day = (data or snapshots.default()).date
-    repositories = sorted(tree.repositories, key=len, reverse=True)
-    texts = _ci_texts(tree, repositories)
-    branches = ((folder, branch) for folder, path in tree.repositories.items() if (branch := branch_of(Path(path))))
-    distros, reason = default_distros(ros, texts, branches, known, today=day)
+    revision = getattr(tree, "revision", "")
+    # What is checked out says nothing of another revision; the name of that one does, if it is a branch or a tag.
+    branches = [("", revision)] if revision and not revision.startswith(("HEAD", "@")) else _list_branches(tree)
+    distros, reason = default_distros(ros, _ci_texts(tree), branches, known, today=day)
     return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)
 
 
-def _ci_texts(tree: Tree, repositories: Sequence[str]) -> Iterable[tuple[str, str, str]]:
-    for entry in tree.entries():
-        if entry.size <= _LARGEST and _CI_FILE.search(entry.path):
-            try:
-                text = tree.read(entry.path, _LARGEST).decode("utf-8", "replace")
-            except OSError:
-                continue
-            yield _owner(entry.path, repositories), entry.path, text
+def _list_branches(tree: Tree) -> list[tuple[str, str]]:
+    found = ((folder, branch_of(Path(path))) for folder, path in tree.repositories.items())
+    return [(folder, branch) for folder, branch in found if branch]
 
 
-def _owner(path: str, repositories: Sequence[str]) -> str:
-    return next((folder for folder in repositories if folder in ("", ".") or path.startswith(folder + "/")), "")
+def _ci_texts(tree: Tree) -> Iterator[tuple[str, str, str]]:
+    """The texts that may name distros, each with the repository that it belongs to. A folder with files that CI
+    services read at the root of a repository alone is one, also where its history was left out."""
+    paths = [
+        entry.path
+        for entry in tree.entries()
+        if entry.size <= _LARGEST
+        and (_CI_FILE.search(entry.path) or _REPOSITORY_FILE.search(entry.path))
+        and not is_vendored(entry.path)
+    ]
+    roots = {path[: at.start()].rstrip("/") for path in paths if (at := _AT_ROOT.search(path))}
+    owners = sorted({folder.strip("./") for folder in tree.repositories} | roots, key=len, reverse=True)
+    for path in paths:
+        try:
+            text = tree.read(path, _LARGEST).decode("utf-8", "replace")
+        except OSError:
+            continue
+        yield next((folder for folder in owners if not folder or path.startswith(f"{folder}/")), ""), path, text
 
 
 def branch_of(repository: Path) -> str:

@@ -26,6 +26,17 @@ shown = visible
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
 
 
+_VENDORED = frozenset((
+    "third_party", "thirdparty", "third-party", "3rdparty", "3rd_party", "3rd-party", "external", "externals", "extern",
+    "vendor", "vendored",
+))  # fmt: skip
+
+
+def is_vendored(path: str) -> bool:
+    """Whether a path lies in a folder that is called as those for other people's code are."""
+    return any(part.lower() in _VENDORED for part in path.split("/")[:-1])
+
+
 class TreeEntry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A file. path: relative to the tree's root, with slashes, bytes that are no UTF-8 as surrogate escapes. size: in
     bytes, 0 where a partial clone does not hold the file."""

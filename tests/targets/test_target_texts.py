@@ -236,6 +236,13 @@ CHOICES = [
     (2, [("", "ci.yml", workflow("bouncy"))], [("", "main")], {}, ("lyrical",), "bouncy ended long ago"),
     (2, [], [("", "humble")], {}, ("humble",), "branch humble"),
     (1, [], [("", "kinetic-devel")], {}, ("kinetic",), "branch kinetic-devel"),
+    (2, [("", "ci.yml", workflow("jazzy")), ("a/b", "a/b/ci.yml", workflow("humble"))], [], {}, ("jazzy",), "ci.yml"),
+    (2, [("", "x.repos", "version: main"), ("a", "a/ci.yml", workflow("humble"))], [], {}, ("humble",), "a/ci.yml"),
+    (2, [("", "pixi.toml", 'channels = ["robostack-humble"]')], [], {}, ("humble",), "pixi.toml"),
+    (2, [("", "x.repos", "repositories:\n  a:\n    version: humble-devel")], [], {}, ("humble",), "x.repos"),
+    (2, [("", "x.repos", "repositories:\n  a:\n    version: humble")], [("", "jazzy")], {}, ("jazzy",), "branch"),
+    (2, [("", "x.repos", "  iron_ore:\n    version: main")], [], {}, ("lyrical",), "newest long-term"),
+    (1, [("", ".rosinstall", "- git: {uri: x, version: melodic-devel}")], [], {}, ("melodic",), ".rosinstall"),
     (2, [], [("", "main")], {}, ("lyrical",), "newest long-term"),
     (1, [], [], {}, ("noetic",), "newest long-term"),
 ]
@@ -271,6 +278,7 @@ class OneFile:
         ("docker/Dockerfile", "humble"),
         ("docker/robot.dockerfile", "humble"),
         ("Dockerfile.ci", "humble"),
+        ("src/third_party/a/.gitlab-ci.yml", "lyrical"),
         ("docs/ci.yaml", "lyrical"),
         ("notes/MyDockerfiles.md", "lyrical"),
     ],
@@ -280,6 +288,26 @@ def test_files_that_are_looked_into(path, distro, monkeypatch):
     chosen = choose_targets((), Config(), 2, OneFile(path, "FROM ros:humble"))
     assert [item.target.distro for item in chosen] == [distro]
     assert chosen[0].reason
+
+
+@pytest.mark.parametrize(
+    ("revision", "distro"),
+    [("jazzy", "jazzy"), ("origin/humble-devel", "humble"), ("1.2.0-humble", "humble"), ("c0ffee", "lyrical")],
+)
+def test_a_revision_that_is_asked_for_names_a_distro(revision, distro, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    tree = OneFile("README.md", "")
+    tree.revision = revision
+    assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == [distro]
+
+
+def test_ci_files_below_another_repositorys_are_not_those_of_the_workspace(monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    tree = OneFile("", "")
+    texts = {".github/workflows/ci.yaml": "FROM ros:jazzy", "src/nav/.github/workflows/ci.yaml": "FROM ros:humble"}
+    tree.entries = lambda: [SimpleNamespace(path=path, size=20) for path in texts]
+    tree.read = lambda path, limit: texts[path].encode()
+    assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == ["jazzy"]
 
 
 def test_asked_for_comes_first_then_the_configuration():
