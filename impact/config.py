@@ -43,6 +43,7 @@ class Config(NamedTuple):
     rosdep_sources: tuple[str, ...] = ()
     index: str = ""  # pyright: ignore[reportIncompatibleMethodOverride]
     private: tuple[str, ...] = ()
+    installed: tuple[str, ...] = ()
     trusted: bool = False
 
 
@@ -110,7 +111,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     for name, target in targets.items():
         if not isinstance(target, dict) or not isinstance(target.get("distro", target.get("file")), str):
             raise ConfigError(f'{path}: [targets.{name}] needs a `distro` (such as "humble") or a `file`')
-    _known(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private"})
+    _known(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private", "installed"})
     _known(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
     fail_on = _string(path, check, "fail_on")
     if fail_on not in ("", *_FAIL_ON):
@@ -131,6 +132,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
         rosdep_sources=_strings(path, workspace, "rosdep_sources"),
         index=_string(path, workspace, "index"),
         private=_strings(path, workspace, "private"),
+        installed=_strings(path, workspace, "installed"),
         trusted=trusted,
     )
 

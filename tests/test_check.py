@@ -109,7 +109,7 @@ def test_configuration(tmp_path):
     (tmp_path / "rosimpact.toml").write_text(
         "\ufeff[targets.robot]\ndistro = 'humble'\n[targets.laptop]\ndistro = 'jazzy'\n"
         "[check]\nselect = 'packages'\nseverity = { unused-dependency = 'off' }\nfail_on = 'warning'\n"
-        "[workspace]\nprivate = ['ours']\nindex = 'https://example.org/index-v4.yaml'\n"
+        "[workspace]\nprivate = ['ours']\ninstalled = 'ros_base'\nindex = 'https://example.org/index-v4.yaml'\n"
         "[paths.'src/**']\nignore = ['all']\n",
         encoding="utf-8",
     )
@@ -117,6 +117,7 @@ def test_configuration(tmp_path):
     assert config.default_targets == ("robot", "laptop")
     assert config.select == ("packages",) and config.severity == {"unused-dependency": "off"}
     assert config.fail_on == "warning" and config.private == ("ours",)
+    assert config.installed == ("ros_base",)
     assert config.paths[0].pattern == "src/**" and config.paths[0].ignore == ("all",)
     assert load(tmp_path / "nowhere").path is None
 

@@ -75,7 +75,7 @@ def results_key(view: TargetView, rules: Iterable[str]) -> bytes:
         repr(
             (
                 *(code_stamp(), view.target.identity(), view.horizon, sorted(rules)),
-                *(config.private, config.underlays, config.repos),
+                *(config.private, config.installed, config.underlays, config.repos),
             )
         ).encode()
     )

@@ -404,8 +404,13 @@ class TargetView:
         return bool(self.config.underlays or self.config.repos)
 
     def private(self, name: str) -> bool:
-        """True for packages that the configuration calls one's own."""
-        return name in self.config.private
+        """True for packages that the configuration calls one's own, or has on every machine."""
+        return name in self.config.private or name in self.config.installed
+
+    @cached_property
+    def installed(self) -> frozenset[str]:
+        """Packages and rosdep keys that every machine has by the configuration, and what is installed with them."""
+        return self.spread(self.config.installed)
 
     @cached_method
     def is_standard(self, header: str) -> bool:
@@ -765,7 +770,7 @@ class TargetView:
 
     def _answers(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         for provider in providers:
-            if not provider.name or provider.name in names:
+            if not provider.name or provider.name in names or provider.name in self.installed:
                 return True
         vendored, installed = self._reach(names)
         for provider in providers:
@@ -783,7 +788,8 @@ class TargetView:
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
             installed = self.apt.base.union(
-                *(self.apt.brought_by(d) for n in names if n not in self.workspace.packages for d in self.debian(n))
+                *(self.apt.brought_by(d) for n in names if n not in self.workspace.packages for d in self.debian(n)),
+                *(self.apt.brought_by(d) for n in self.installed for d in self.debian(n) or {n}),
             )
             known = (names, vendored, installed)
             if isinstance(names, _LASTING):

@@ -85,6 +85,27 @@ FLOE_DEPENDS = (
 )
 
 SILENT = {
+    "what every machine has by the configuration": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "find_package(Boost REQUIRED)\nfind_package(geometry_msgs REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "target_link_libraries(sled Boost::boost geometry_msgs::geometry_msgs)",
+            sled_cpp="#include <boost/array.hpp>\n#include <geometry_msgs/msg/point.hpp>\n",
+            rosimpact_toml='[workspace]\ninstalled = ["common_interfaces", "libboost-all-dev"]\n',
+        ),
+        ("rosimpact.toml", '"common_interfaces", ', ""),
+    ),
+    "boost that every machine has by the configuration": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "find_package(Boost REQUIRED)\nadd_library(sled sled.cpp)\ntarget_link_libraries(sled Boost::boost)",
+            sled_cpp="#include <boost/array.hpp>\n",
+            rosimpact_toml='[workspace]\ninstalled = ["libboost-all-dev"]\n',
+        ),
+        ("rosimpact.toml", '"libboost-all-dev"', ""),
+    ),
     "components that a macro which cannot be read may ask for": Silent(
         "unlinked-boost",
         ("humble",),
