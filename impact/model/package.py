@@ -241,6 +241,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Members that may be such names, of objects whose type is not known.
     unresolved_receivers: int = 0
     settings: tuple[SettingUse, ...] = ()
+    # Names that neither the Python file itself nor the module of the package that it imports them from defines.
+    undefined: tuple[ImportUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -451,6 +453,8 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        from .python.undefined import list_undefined
+
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
             self.name,
@@ -498,6 +502,10 @@ class _Join:
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
+            undefined=tuple(
+                ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
+                for p, i in list_undefined(python, modules, self.files)
+            ),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
         )
