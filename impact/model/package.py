@@ -243,6 +243,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     settings: tuple[SettingUse, ...] = ()
     # Names that neither the Python file itself nor the module of the package that it imports them from defines.
     undefined: tuple[ImportUse, ...] = ()
+    # Sources, each with another one that defines a function which it seems to use, and the function.
+    own_calls: tuple[tuple[str, str, str], ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -506,6 +508,7 @@ class _Join:
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in list_undefined(python, modules, self.files)
             ),
+            own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
         )
@@ -575,6 +578,23 @@ class _Join:
         for header in self.installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
+
+    def own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
+        """As LinkedPackage.own_calls."""
+        from .cpp.own_calls import list_own_calls
+
+        compiled = {path: role[2] for path, role in roles.items() if role[2] and not is_header(path)}
+        if len(set(compiled.values())) < 2:
+            return
+        words = cache(lambda path: _spoken(self.cpp[path]))
+
+        def included(path: str) -> Collection[str]:
+            return {to for to, _ in self.resolved.get(path, ()) if to is not None}
+
+        def defined(paths: Collection[str]) -> Mapping[str, Collection[str]]:
+            return {path: one.functions for path, one in zip(paths, self.declared(paths), strict=True)}
+
+        yield from list_own_calls(compiled, included, words, defined)
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
