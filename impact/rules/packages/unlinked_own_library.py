@@ -20,7 +20,8 @@ Use instead
     target_link_libraries(wave arm)
 
 Not reported
-    Static libraries; targets that are given something that cannot be seen; functions that another class may have.
+    Static libraries; libraries that others of the package link together with it; targets that are given something
+    that cannot be seen; functions that another class may have.
 """
 
 from ...model.cmake.links import linked_items
@@ -45,6 +46,7 @@ def unlinked_own_library(view: TargetView, package: Package):
     for target in package.build.targets:
         for source in target.sources:
             compiling.setdefault(source, []).append(target.name)
+    links = {name: linked_items(package, name) for name in targets} if package.digest.own_calls else {}
     known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
     seen = set()
     for source, other, function in package.digest.own_calls:
@@ -56,7 +58,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             libraries = sorted(n for n in definers if targets[n].kind == "library" and n != name)
             if not libraries or not view.certain(c for c in target.conditions if "TESTING" not in c.text):
                 continue
-            items = linked_items(package, name)
+            items = links[name]
             if items is None or any(
                 "$" in item and ((match := PACKAGE_VARIABLE.match(item)) is None or match[1] not in known)
                 for item in items
@@ -65,6 +67,9 @@ def unlinked_own_library(view: TargetView, package: Package):
             reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
             if not definers.isdisjoint(reached) or any(plain(n) in plain(i) for n in libraries for i in items):
                 continue
+            users = [given for given in links.values() if given is not None and name in given]
+            if users and not any(definers.isdisjoint(given) for given in users):
+                continue  # what links the one links the other
             seen.add((name, other))
             data = {"target": name, "function": function}
             tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)
