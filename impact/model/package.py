@@ -528,9 +528,22 @@ class _Join:
         ending = "/" + include
         for path in candidates:
             plain = path.removesuffix(".in")
-            if plain.endswith(ending) or plain == include:
+            if (plain.endswith(ending) or plain == include) and not self._is_copy(plain, include):
                 return path
         return None
+
+    def _is_copy(self, path: str, include: str) -> bool:
+        """Whether a file is called like a header of another package of the workspace, and lies in no folder that a
+        target searches."""
+        head = include.partition("/")[0]
+        return head != self.name and head in self.home and path.removesuffix(include).rstrip("/") not in self._folders
+
+    @cached_property
+    def _folders(self) -> Container[str]:
+        """The folders that targets are given to search for headers."""
+        items = [item for item, _ in self.build.include_dirs]
+        items += [link.item for t in self.build.targets for link in t.links if link.how == "include"]
+        return {posixpath.normpath(item).removeprefix(".") for item in items}
 
     def roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
         """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""

@@ -1,4 +1,4 @@
-"""parameter-header: a header of generate_parameter_library is included by a wrong path, or without a link to its library.
+"""parameter-header: a header of generate_parameter_library is included by a wrong path, or its library is not linked.
 
 What it does
     Compares includes of headers that generate_parameter_library makes in the workspace with the paths that the target's
