@@ -73,9 +73,9 @@ def ungiven_package(view: TargetView, package: Package):
                 items = _find_given(targets, target)
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-                given = {package_of(item) for item in items or () if item not in hiding} | everywhere
                 # A target of the package may be called like the package, and brings none of what that declares.
-                given -= {package.name, *targets}
+                given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
+                given = (given | everywhere) - {package.name}
                 reach[target] = (
                     None if items is None else (view.spread(s for n in given if n for s in (n, n.lower())), hiding)
                 )
