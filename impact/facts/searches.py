@@ -64,11 +64,13 @@ def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
 
 class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. spaces: namespaces.
-    tf2: words in namespace tf2, or in a special form of a template."""
+    tf2: words in namespace tf2, or in a special form of a template. functions: of classes and namespaces that it
+    defines outside of them, `Class::function`."""
 
     types: frozenset[str] = frozenset()
     spaces: frozenset[str] = frozenset()
     tf2: frozenset[str] = frozenset()
+    functions: frozenset[str] = frozenset()
     problems: tuple[Problem, ...] = ()
 
 
@@ -82,6 +84,7 @@ _SPACE = re.compile(rb"namespace\s+(\w+)")
 # tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
 _OF_TF2 = (re.compile(rb"namespace\s+tf2\s*\{.*", re.DOTALL), re.compile(rb"template\s*<\s*>[^;{}]*"))
 _WORD = re.compile(rb"\w+")
+_FUNCTION = re.compile(rb"\b(\w{1,100}::[A-Za-z]\w{3,100})\s?(\([^;{}]{0,2000})\{")
 
 
 def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
@@ -90,6 +93,8 @@ def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
         _decoded({*_types(data), *_MESSAGE.findall(data)}),
         _decoded(_SPACE.findall(data)),
         _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
+        # In a condition or an argument, a parenthesis opens before.
+        _decoded(name for name, rest in _FUNCTION.findall(data) if rest.count(b"(") == rest.count(b")")),
     )
 
 

@@ -27,7 +27,8 @@ class NamedInterface(NamedTuple):
 
 
 class MemberType(NamedTuple):
-    """What an expression is. section: empty for a whole service or action, or all of its constants' scopes.
+    """What an expression is. section: empty for a whole service or action, or all of its constants' scopes; that of a
+    field (`message.center`) where what the field is made of differs between versions.
     several: a sequence of them."""
 
     interface: NamedInterface
@@ -160,7 +161,8 @@ class InterfaceScope:
         rows = definition.members(type_.section, name)
         kinds = {(row.nested, row.array) for row in rows if not row.constant}
         if len(kinds) != 1:
-            return None
+            inner = f"{type_.section}.{name}"
+            return type_._replace(section=inner) if inner in definition.sections else None
         (inner, array), = kinds  # fmt: skip
         return MemberType(nested(rows[0], type_.interface.ros), "message", array) if inner else None
 

@@ -241,6 +241,10 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Members that may be such names, of objects whose type is not known.
     unresolved_receivers: int = 0
     settings: tuple[SettingUse, ...] = ()
+    # Names that neither the Python file itself nor the module of the package that it imports them from defines.
+    undefined: tuple[ImportUse, ...] = ()
+    # Sources, each with another one that defines a function which it seems to use, and the function.
+    own_calls: tuple[tuple[str, str, str], ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -451,6 +455,8 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        from .python.undefined import list_undefined
+
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
             self.name,
@@ -498,6 +504,11 @@ class _Join:
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
+            undefined=tuple(
+                ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
+                for p, i in list_undefined(python, modules, self.files)
+            ),
+            own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
         )
@@ -517,9 +528,22 @@ class _Join:
         ending = "/" + include
         for path in candidates:
             plain = path.removesuffix(".in")
-            if plain.endswith(ending) or plain == include:
+            if (plain.endswith(ending) or plain == include) and not self._is_copy(plain, include):
                 return path
         return None
+
+    def _is_copy(self, path: str, include: str) -> bool:
+        """Whether a file is called like a header of another package of the workspace, and lies in no folder that a
+        target searches."""
+        head = include.partition("/")[0]
+        return head != self.name and head in self.home and path.removesuffix(include).rstrip("/") not in self._folders
+
+    @cached_property
+    def _folders(self) -> Container[str]:
+        """The folders that targets are given to search for headers."""
+        items = [item for item, _ in self.build.include_dirs]
+        items += [link.item for t in self.build.targets for link in t.links if link.how == "include"]
+        return {posixpath.normpath(item).removeprefix(".") for item in items}
 
     def roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
         """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""
@@ -567,6 +591,23 @@ class _Join:
         for header in self.installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
+
+    def own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
+        """As LinkedPackage.own_calls."""
+        from .cpp.own_calls import list_own_calls
+
+        compiled = {path: role[2] for path, role in roles.items() if role[2] and not is_header(path)}
+        if len(set(compiled.values())) < 2:
+            return
+        words = cache(lambda path: _spoken(self.cpp[path]))
+
+        def included(path: str) -> Collection[str]:
+            return {to for to, _ in self.resolved.get(path, ()) if to is not None}
+
+        def defined(paths: Collection[str]) -> Mapping[str, Collection[str]]:
+            return {path: one.functions for path, one in zip(paths, self.declared(paths), strict=True)}
+
+        yield from list_own_calls(compiled, included, words, defined)
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
@@ -882,18 +923,16 @@ class _Join:
 
     def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
-        none does is taken alone, and one that is only a part of another as that one includes it."""
+        none does, or that is installed and only tests compile, is taken alone; one that is only a part of another, as
+        that one includes it."""
         found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
-        besides: dict[str, set[tuple[str, ...]]] = {p: set() for p in found}
         own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
         for source, (role, *_) in roles.items():
             if is_header(source):
                 continue
             for path, before in self.met(source, own):
-                # An installed header may be compiled by nothing but programs that are called tests.
-                (found if role == roles[path][0] else besides)[path].add(tuple(sorted(own[path] | before)))
-        for path, sets in found.items():
-            sets.update(besides[path] if not sets else ())
+                if role == roles[path][0]:
+                    found[path].add(tuple(sorted(own[path] | before)))
         parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
         for header in self.outermost(roles) if parts else ():
             for path, before in self.met(header, parts):

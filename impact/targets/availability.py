@@ -258,7 +258,7 @@ class Availabilities:
                 definition = history.definition(name)
                 if definition is None or not there(definition.spans, state):
                     continue
-                sections = parts[:-1] or definition.sections
+                sections = [".".join(parts[:-1])] if parts[:-1] else [s for s in definition.sections if "." not in s]
                 rows = [row for section in sections for row in definition.members(section, member)]
                 spans = tuple(span for row in rows for span in row.spans)
                 successor = next((row.successor for row in rows if row.successor), "")

@@ -10,6 +10,7 @@ import msgspec
 from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
+from .bound import PYTHON2_METHODS
 from .text import SourceText, caught_by, child_fields
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
@@ -84,6 +85,8 @@ class PythonReader(ObjectUses, SourceText):
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
         self.uses: dict[tuple[PythonScope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
+        # Names that nothing in the file binds, see bound.py.
+        self.unbound: frozenset[str] = frozenset()
         self.assigned: set[tuple[PythonScope, str]] = set()
         self.imported_names: list[AttributeUse] = []
         self.references: dict[Reference, None] = {}
@@ -159,8 +162,23 @@ class PythonReader(ObjectUses, SourceText):
         if node.ctx.__class__ is ast.Store:
             self.scope.bound.add(node.id)
             self.hold(node.id, "")
+        elif node.id in self.unbound:
+            self.note_use(node.id, node.lineno, node.col_offset)
+
+    def note_use(self, text: str, line: int, offset: int) -> None:
+        """Notes where a name, dotted or not, is used first; that of a method begins with the dot."""
+        key = (self.scope, text, self.use_conditions)
+        known = self.uses.get(key)
+        if known is None:
+            self.uses[key] = (line, offset, self.may_not_run)
+        elif known[2] and not self.may_not_run:
+            self.uses[key] = (*known[:2], False)
 
     def visit_Attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
+        if call is not None and node.attr in PYTHON2_METHODS:
+            of_module = node.value.__class__ is ast.Name and self.imported(node.value.id)  # type: ignore[attr-defined]
+            if not of_module:  # six.iteritems is no method
+                self.note_use(f".{node.attr}", node.end_lineno or 0, (node.end_col_offset or 0) - len(node.attr))
         steps = [node]
         value = node.value
         while value.__class__ is ast.Attribute:
@@ -187,12 +205,7 @@ class PythonReader(ObjectUses, SourceText):
             return
         if node.ctx.__class__ is ast.Store:
             self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
-        key = (self.scope, f"{head}.{'.'.join(parts)}", self.use_conditions)
-        known = self.uses.get(key)
-        if known is None:
-            self.uses[key] = (value.lineno, value.col_offset, self.may_not_run)
-        elif known[2] and not self.may_not_run:
-            self.uses[key] = (*known[:2], False)
+        self.note_use(f"{head}.{'.'.join(parts)}", value.lineno, value.col_offset)
 
     def dotted(self, scope: PythonScope, text: str) -> Iterator[str]:
         """What a name with parts stands for, import aliases resolved."""
@@ -207,6 +220,8 @@ class PythonReader(ObjectUses, SourceText):
             found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
         for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
             head, _, rest = text.partition(".")
+            if not rest:
+                continue
             for dotted, extra in self.imported(head, scope):
                 if dotted.startswith("."):
                     continue
@@ -224,6 +239,24 @@ class PythonReader(ObjectUses, SourceText):
             AttributeUse(text, line, column, conditions, lazy)
             for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
         )
+
+    def unbound_names(self) -> tuple[AttributeUse, ...]:
+        """The first use of each name that nothing binds, a sure one where there is any; and calls of methods that only
+        Python 2 has and the file does not define, each with its dot."""
+        found: dict[str, AttributeUse] = {}
+        for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
+            head = text.partition(".")[0]
+            if head not in self.unbound and head:
+                continue
+            if any(head in s.bound or head in s.imports for s in scope.chain):
+                continue
+            name = head or text
+            if not head and any(f"def {text[1:]}" in one for one in self.lines):
+                continue
+            use = AttributeUse(name, line, self.column(line, offset), conditions, lazy)
+            known = found.get(name, use)
+            found[name] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
+        return tuple(sorted(found.values(), key=lambda one: (one.line, one.column)))
 
     def bind_import(self, name: str, dotted: str, relevant: tuple[Condition, ...]) -> None:
         known = self.scope.imports.setdefault(name, [])

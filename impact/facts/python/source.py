@@ -14,6 +14,7 @@ from ..markup import text_encoding
 from ..place import Problem, Reference
 from ..words import words_of
 from . import python2
+from .bound import scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .uses import FieldUse, PythonUse
 
@@ -26,7 +27,9 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
     `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of interfaces.
-    words: see words_of().
+    words: see words_of(). unbound: names that nothing in the file binds, and methods, with a
+    dot before, that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can
+    import from it; empty where that cannot be told.
     """
 
     imports: tuple[Import, ...]
@@ -40,6 +43,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     uses: tuple[PythonUse, ...] = ()
     words: str = ""
     fields: tuple[FieldUse, ...] = ()
+    unbound: tuple[AttributeUse, ...] = ()
+    bound: str = ""
 
 
 class PythonSource(NamedTuple):
@@ -149,7 +154,11 @@ def extract(data: bytes) -> PythonFile:
     if tree is not None:
         try:
             reader = PythonReader(parsed, text)
+            # What was rewritten may have lost names that it binds.
+            reader.unbound, bound = (None if old else scope_names(parsed)) or (frozenset(), frozenset())
             reader.read(tree)
+            if any("*" in item.names for item in reader.imports):
+                reader.unbound = bound = frozenset()
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.attributes(),
@@ -162,6 +171,8 @@ def extract(data: bytes) -> PythonFile:
                 uses=reader.object_uses(reader.column),
                 words=words_of(data),
                 fields=reader.field_uses(reader.column),
+                unbound=() if old else reader.unbound_names(),
+                bound=f" {' '.join(sorted(bound))} " if bound else "",
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

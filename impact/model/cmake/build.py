@@ -53,7 +53,8 @@ class DefinedMacro(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One item given to a target. how: `link` (target_link_libraries), `ament` (ament_target_dependencies),
-    `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces).
+    `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces),
+    `objects` ($<TARGET_OBJECTS:>).
     item: as written with variables expanded; an unset X_LIBRARIES, X_INCLUDE_DIRS, X_EXPORTED_TARGETS or X_TARGETS
     stays as `${X_LIBRARIES}` so that what it stands for can still be told, and so does any other variable that nothing
     sets. visibility: PUBLIC, PRIVATE, INTERFACE or empty.

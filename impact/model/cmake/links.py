@@ -54,7 +54,7 @@ def linked_items(package: Package, target: str) -> set[str] | None:
         seen.add(own.name)
         waiting.extend([own.alias_of] if own.alias_of else [])
         for link in own.links:
-            if link.how in ("link", "ament"):
+            if link.how in ("link", "ament", "objects"):
                 items.add(link.item)
                 waiting.append(link.item)
     return items

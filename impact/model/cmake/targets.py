@@ -73,7 +73,10 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
     """Gives sources to a target, as paths relative to the workspace root where they can be told."""
     for item in rejoin(items):
         for part in reduced(item):
-            if part and not part.startswith("$<TARGET_OBJECTS"):
+            if part.startswith("$<TARGET_OBJECTS"):
+                objects = word(part.partition(":")[2].rstrip(">"), part.at, part.conditions, part.sure)
+                add_links(run, draft, [objects], "objects")
+            elif part:
                 draft.add_source(run.tree_path(part), run.under(part))
 
 

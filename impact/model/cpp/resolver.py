@@ -60,7 +60,8 @@ class CppType(NamedTuple):
 
 
 class Written(NamedTuple):
-    """A type in its parts. outer: the name without template arguments; arguments: those of its template, None without;
+    """A type in its parts. outer: the name without template arguments, `::` before that of the global namespace kept;
+    arguments: those of its template, None without;
     tail: names behind the template; pointer: it ends with `*`."""
 
     outer: str
@@ -76,7 +77,7 @@ def parse_type(text: str) -> Written:
     array = text.endswith("[]")
     text = _QUALIFIERS.sub(" ", text.removesuffix("[]")).strip()
     pointer = text.rstrip("& ").endswith("*")
-    text = text.rstrip("*& \n\t").removeprefix("::")
+    text = text.rstrip("*& \n\t")
     opened = text.find("<")
     if opened < 0:
         return Written("".join(text.split()), None, "", pointer, array)
@@ -259,6 +260,8 @@ class Resolver:
 
     def named(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """The class that a name without template arguments is."""
+        if name.startswith("::"):
+            name, place = name.removeprefix("::"), _NOWHERE
         key = name, place.scope, place.owner
         if key in self._named:
             return self._named[key]
@@ -280,7 +283,8 @@ class Resolver:
                         name = f"{one.name}::{name}"
                         break
                 for base in one.bases:
-                    if parse_type(base).outer.rpartition("::")[2] == head and parse_type(base).outer != name:
+                    outer = parse_type(base).outer.removeprefix("::")
+                    if outer.rpartition("::")[2] == head and outer != name:
                         return self._nested(self.type_of(base, _around(one), depth + 1), rest, place, depth)
         own = self._own_class(name, place)
         if own is not None:
@@ -333,8 +337,10 @@ class Resolver:
         return self.named(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
 
     def _own_class(self, name: str, place: CodePlace) -> CppType | None:
+        if name.startswith("::"):
+            name, place = name.removeprefix("::"), _NOWHERE
         last = name.rpartition("::")[2]
-        names = {one.name for one in self.homes(last)}
+        names = {one.name for file in self.files for one in file.classes_named(last)}
         if not names:
             return None
         for full in self.meanings(name, place):

@@ -425,7 +425,8 @@ class MemberUses:
         if type_ is None:
             if not guess or "_" not in use.word or self._shows(use.object) or self.resolver.declares(use.word):
                 return None
-            meant = [(i, s) for i, d in self.scope.definitions.items() for s in d.sections if use.word in d.sections[s]]
+            known = self.scope.definitions.items()
+            meant = [(i, s) for i, d in known for s in d.sections if "." not in s and use.word in d.sections[s]]
             return FoundMember(*meant[0], use.word, use.offset, False) if len(meant) == 1 else None
         if type_.interface is None or type_.several:
             return None

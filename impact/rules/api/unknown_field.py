@@ -87,7 +87,8 @@ def _list_members(
             doubts = (*doubts_of_place(view, use.role, use.conditions), use.sure or Doubt.INCOMPLETE)
             data = {**data_of(found), "interface": name}
             kind = f"field {found.state}"
-            yield diagnose(found, use.at, use.member, package.name, doubts, kind=kind, data=data, changed=name)
+            subject = ".".join((*use.section.split(".")[1:], use.member))
+            yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data, changed=name)
 
 
 def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:

@@ -45,36 +45,42 @@ def ungiven_package(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
     everywhere |= {package_of(link.item) for link in package.build.links}
-    found = {f.name for f in package.build.found}
+    found = {f.name for f in package.build.found} - {package.name}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     seen = set()
     reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
     for include in package.digest.includes:
         providers = view.header(include.path)
-        if (
-            not include.targets
-            or not view.certain(include.conditions)
-            or len(providers) != 1
-            or providers[0].kind != "ros"
-        ):
+        if not include.targets or not view.certain(include.conditions):
             continue
-        name = providers[0].name
-        if name not in found or name == package.name or name in seen or name.endswith("_vendor"):
+        owners = {p.name for p in providers}
+        if not owners.isdisjoint(("", package.name)) or ((
+            system := tuple(p for p in providers if p.kind != "ros")
+        ) and (view.blind(package) or view.answered(system, view.closure(package)))):
+            continue  # the compiler finds it by itself
+        names = owners & found  # of several possible owners, the one that CMake finds
+        if len(names) != 1:
+            continue
+        (name,) = names
+        if name in seen or name.endswith("_vendor"):
             continue
         of_folder = doubts_of_folder(view, name, include.path)
-        if of_folder is None:
+        if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
         for target in include.targets:
             if target not in reach:
                 items = _find_given(targets, target)
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-                given = {package_of(item) for item in items or () if item not in hiding} | everywhere
-                names = {s for n in given if n for s in (n, n.lower())}
-                reach[target] = None if items is None else (view.spread(names), hiding)
+                # A target of the package may be called like the package, and brings none of what that declares.
+                given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
+                given = (given | everywhere) - {package.name}
+                reach[target] = (
+                    None if items is None else (view.spread(s for n in given if n for s in (n, n.lower())), hiding)
+                )
             brought = reach[target]
-            if brought is None or name in brought[0] or any(may_hide(item, name) for item in brought[1]):
+            if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
                 continue
             seen.add(name)
             certain = view.certain(targets[target].conditions)

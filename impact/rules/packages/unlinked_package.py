@@ -1,11 +1,12 @@
-"""unlinked-package: a program compiles headers of a package and links nothing that brings its library.
+"""unlinked-package: a target compiles headers of a package and links nothing that brings its library.
 
 What it does
-    Reports programs that include a client library (roscpp, rclcpp) and are linked to nothing, and in ROS 1 programs
-    whose own sources compile headers of a library which no component that they are linked to exports.
+    Reports programs, and shared libraries that are installed or exported, which include a client library (roscpp,
+    rclcpp) and are linked to nothing, and in ROS 1 programs whose own sources compile headers of a library which no
+    component that they are linked to exports.
 
 Why it breaks
-    The linker reports undefined references.
+    The linker reports undefined references; for a shared library it does where the library is used.
 
 Severity
     error for programs that include a client library; warning otherwise, since a program may not use what it includes.
@@ -55,16 +56,19 @@ _CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp":
 
 
 def _list_without_client(view: TargetView, package):
-    """Programs that include a client library and are given nothing to link."""
+    """Programs, and shared libraries for others, that include a client library and are given nothing to link."""
     build = package.build
     if build.unresolved or build.links:
         return
-    linked = {t.name for t in build.targets if any(link.how in ("link", "ament") for link in t.links)}
+    linked = {t.name for t in build.targets if any(link.how in ("link", "ament", "objects") for link in t.links)}
+    offered = {e.item for e in build.exports if e.how in ("libraries", "ament_export_libraries")}
+    offered.update(item for i in build.installs if i.kind == "targets" for item in i.items)
     programs = {
         t.name: t
         for t in build.targets
-        if t.kind == "executable" and t.name not in linked and t.sources and view.certain(t.conditions)
-    }
+        if (t.kind == "executable" or (t.kind == "library" and not t.static and t.name in offered))
+        and t.name not in linked and t.sources and view.certain(t.conditions)
+    }  # fmt: skip
     for include in package.digest.includes if programs else ():
         client, item = _CLIENTS.get(include.path, ("", ""))
         if not client or client in view.workspace.packages or not view.certain(include.conditions):
@@ -72,10 +76,14 @@ def _list_without_client(view: TargetView, package):
         if include.role != "build":
             continue  # such as a test's program that `make all` leaves out
         for name in include.targets:
-            target = programs.pop(name, None)
-            if target is not None:
-                data = {"target": name, "header": include.path, "item": item}
-                yield Diagnostic(target.at, client, package.name, data, "client library")
+            target = programs.get(name)
+            # A library may have got the header by one that it uses for a type alone.
+            if target is None or (target.kind == "library" and include.at.path not in target.sources):
+                continue
+            del programs[name]
+            data = {"target": name, "header": include.path, "item": item}
+            doubts = () if target.kind == "executable" else (Doubt.DISTURBS,)
+            yield Diagnostic(target.at, client, package.name, data, "client library", doubts)
 
 
 def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:

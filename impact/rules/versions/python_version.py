@@ -23,8 +23,8 @@ from collections.abc import Iterator
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
+from ..python_files import Refused, report_refused
 from ..rule import Text, rule
-from .python_files import Refused, report_refused
 
 
 @rule(

@@ -28,8 +28,8 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
 from ...targets.target import Target
+from ..python_files import Refused, report_refused
 from ..rule import Doubt, Text, rule
-from .python_files import Refused, report_refused
 
 
 @rule(

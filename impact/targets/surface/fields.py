@@ -10,9 +10,11 @@ ROS generation:
                                             `@` the states (none told: whenever the interface is there), `>` successor
 """
 
+from __future__ import annotations
+
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -37,7 +39,8 @@ class FieldMember(NamedTuple):
 
 
 class Definition:
-    """All that an interface ever was. sections: section to member name to what it was in some states each."""
+    """All that an interface ever was. sections: section to member name to what it was in some states each. Where the
+    interface that a field is made of differs between states, `section.field` is a section too, with its members."""
 
     def __init__(self, spans: tuple[tuple[int, int], ...], sections: dict[str, dict[str, list[FieldMember]]]):
         self.spans, self.sections = spans, sections
@@ -65,9 +68,10 @@ _MEMBER = re.compile(r"(\w+)(!)?(?::([\w/]+))?(\*)?(?:@([\d,-]+))?(?:>(\w+))?")
 
 
 class FieldsHistory:
-    """All versions of one package in one ROS generation that were read."""
+    """All versions of one package in one ROS generation that were read. others: gives those of other packages."""
 
-    def __init__(self, text: str):
+    def __init__(self, text: str, others: Callable[[str], FieldsHistory | None] = lambda _: None):
+        self._others = others
         first, last, *lines = text.split("\n")
         self.starts, self._last = first.split(" "), last.split(" ")
         self._lines: dict[str, tuple[tuple[tuple[int, int], ...], list[str]]] = {}
@@ -127,8 +131,25 @@ class FieldsHistory:
                             FieldMember(name, nested or "", bool(array), bool(constant),
                                    _spans(there, len(self.starts)) if there else spans, successor or "")
                         )  # fmt: skip
+            for section, members in [*sections.items()]:
+                for name, rows in members.items():
+                    if len({row.nested for row in rows}) > 1 and (inner := self._members_within(rows)):
+                        sections[f"{section}.{name}"] = inner
             known = self._definitions[interface] = Definition(spans, sections)
         return known
+
+    def _members_within(self, rows: Iterable[FieldMember]) -> dict[str, list[FieldMember]]:
+        """The members of what a field is made of in some states each; none where one of these is no known interface."""
+        found: dict[str, list[FieldMember]] = {}
+        for row in rows:
+            package, _, name = row.nested.partition("/")
+            history = None if row.array or not name else self._others(package)
+            definition = history.definition(f"msg/{name}") if history is not None else None
+            if definition is None:
+                return {}
+            for member, inner in definition.sections.get("message", {}).items():
+                found.setdefault(member, []).append(inner[-1]._replace(spans=row.spans, successor=""))
+        return found
 
     @cached_method
     def lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
@@ -232,7 +253,7 @@ class Fields:
     def history(self, package: str, ros: int) -> FieldsHistory | None:
         """A package's versions; None when it was not read."""
         text = self._texts.get(f"{package} {ros}")
-        return FieldsHistory(text) if text else None
+        return FieldsHistory(text, lambda name: self.history(name, ros)) if text else None
 
 
 @cache

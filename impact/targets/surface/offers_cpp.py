@@ -51,9 +51,8 @@ def availability_of_use(
         return None
     if offered.here is None and offered.state in ("removed", "absent"):
         return _lacking(offers, offered, how)
-    found = _of_what_is_there(offers, offered, how, arguments, given, templated)
-    if found is None or offers.there("c++", name, package):
-        return found
+    if offers.there("c++", name, package):
+        return _of_what_is_there(offers, offered, how, arguments, given, templated)
     return _inherited(offers, offer, name, how, arguments, given)
 
 

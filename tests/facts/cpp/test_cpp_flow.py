@@ -442,6 +442,15 @@ def test_macros_and_what_the_grammar_does_not_know_hide_nothing(text):
     assert guards(next(f for f in facts.functions if f.name == "f")) == []
 
 
+@pytest.mark.parametrize("text", [
+    "class API Arm { void go() { g(); } };", "struct API Arm { Arm() { g(); } };",
+    "class API Arm { public: void go() { g(); } };",
+])  # fmt: skip
+def test_a_class_behind_a_macro_is_no_function(text):
+    facts = extract(f"{text}\nvoid f() {{ h(); }}\n".encode())
+    assert sorted((f.name, [call.callee for call in f.calls]) for f in facts.functions) == [("", ["g"]), ("f", ["h"])]
+
+
 def test_what_did_not_parse_is_said():
     facts = extract(b"void f() { g(); }\n\nint x = = 3 ] ;\n\nvoid h() { g(); }\n")
     assert facts.unread and all(3 <= first <= last <= 4 for first, last in facts.unread)

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from ...facts.condition import Condition
-from ...model.package import ImportUse, SyntaxUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ...targets.target import Target
-from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
+from ..facts.condition import Condition
+from ..model.package import ImportUse, SyntaxUse
+from ..model.view import TargetView
+from ..model.workspace import Package
+from ..targets.target import Target
+from .rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
 
 
 class Refused(NamedTuple):

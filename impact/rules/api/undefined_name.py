@@ -1,0 +1,77 @@
+"""undefined-name: a Python file uses a name that nothing defines.
+
+What it does
+    Reports names that a Python file neither binds nor imports and that are no builtins, such as a class whose import
+    was forgotten; names that are imported from a module of the same package which lacks them; and names that are
+    builtins of Python 2 alone (`raw_input`, `unicode`), or methods of its dictionaries (`iteritems`), where the target
+    has Python 3.
+
+Why it breaks
+    Python raises a NameError or ImportError when the line is reached.
+
+Severity
+    error for what surely runs when a program, launch file or module of the package is started or imported; warning for
+    what is only used in a function that may not run, for methods, and for tests; note in examples, and for what only
+    the newest distro does not accept, besides the first place of a package.
+
+Example
+    name = raw_input("name? ")
+
+Use instead
+    name = input("name? ")
+
+Not reported
+    What stands under a `try` that expects it or a test of the Python version; files with a star import, or that define
+    names by `exec`, `globals()` and the like; imports from modules that do so; methods that the file itself defines.
+"""
+
+from collections.abc import Iterator
+
+from ...facts.python.bound import PYTHON2_BUILTINS
+from ...model.package import ImportUse
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ...targets.target import Target
+from ..python_files import Refused, report_refused
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+
+
+@rule(
+    scope="target",
+    texts={
+        "undefined": Text("nothing in the file defines or imports `{subject}`", "define or import `{subject}`"),
+        "python 2": Text(
+            "`{subject}` is not defined in Python {version}[[ ({horizon})]]", "use its successor in Python 3"
+        ),
+        "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
+    },
+)
+def undefined_name(view: TargetView):
+    for package in view:
+        for use, name in _list_uses(view, package):
+            if use.module or not _is_of_python2(name):
+                doubts = (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
+                kind = "imported" if use.module else "undefined"
+                yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts)
+
+    def find(package: Package, target: Target) -> Iterator[Refused]:
+        for use, name in _list_uses(view, package):
+            if not use.module and _is_of_python2(name):
+                doubts = (*_doubts_of(use), not name.startswith(".") or Doubt.INCOMPLETE)
+                yield Refused(use, name.lstrip("."), "python 2", doubts=doubts, conditions=use.conditions)
+
+    yield from report_refused(view, find)
+
+
+def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str]]:
+    for use in package.digest.undefined:
+        if view.certain(use.conditions):
+            yield use, use.names[0]
+
+
+def _is_of_python2(name: str) -> bool:
+    return name in PYTHON2_BUILTINS or name.startswith(".")
+
+
+def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
+    return (Doubt.LATE,) if use.lazy else ()

@@ -1,0 +1,66 @@
+"""package-linked-by-name: a target links the bare name of a package that has no library or target called so.
+
+What it does
+    Reports names of packages in target_link_libraries() that CMake finds, and that neither export a target nor install
+    a library called so.
+
+Why it breaks
+    CMake hands what is no target to the linker, which stops: cannot find -lname.
+
+Severity
+    error; warning in tests of ROS 1 and under a condition that is not known.
+
+Example
+    target_link_libraries(arm pluginlib)
+
+Use instead
+    target_link_libraries(arm pluginlib::pluginlib)
+
+Not reported
+    Packages whose exports are not known; names that a system library may have.
+"""
+
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, doubts_of_place, rule
+
+
+@rule(
+    texts=Text(
+        "`{target}` links `{subject}`, but that package has no library of this name",
+        "[[link `{replacement}`]]",
+    ),
+)
+def package_linked_by_name(view: TargetView, package: Package):
+    own = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
+    found = {f.name for f in package.build.found if f.how in ("find_package", "catkin", "ament_auto")} - own
+    seen = set()
+    for target in package.build.targets if found and not package.build.unresolved else ():
+        if target.static or target.kind not in ("executable", "library", "module", "test"):
+            continue
+        for link in target.links:
+            name, conditions = link.item, (*target.conditions, *link.conditions)
+            if link.how != "link" or name not in found or name in seen or not view.active(conditions):
+                continue
+            exported = _list_exported(view, name)
+            if exported is None or name in exported:
+                continue
+            seen.add(name)
+            role = "test" if target.kind == "test" or any("TESTING" in c.text for c in conditions) else "build"
+            known = tuple(c for c in conditions if "TESTING" not in c.text)
+            data = {"target": target.name, "replacement": exported[0] if len(exported) == 1 else ""}
+            yield Diagnostic(link.at, name, package.name, data, doubts=doubts_of_place(view, role, known))
+
+
+def _list_exported(view: TargetView, name: str) -> list[str] | None:
+    """The targets and libraries that a package has for others; None where these are not all known."""
+    if view.target.resolve(name) is not None or view.providers.installed_cmake(name):
+        return None
+    own = view.workspace.packages.get(name)
+    if own is not None:
+        names = [t.export_name or t.name for t in own.build.targets] + [e.item for e in own.build.exports]
+        return None if own.build.unresolved or any("$" in one for one in names) else names
+    offer = view.offers.package(name)
+    if offer is None or not offer.exact or any(part in ("targets", "libraries") for part, _ in offer.build.unknown):
+        return None
+    return [*(target.name for target in offer.build.targets), *offer.build.libraries]

@@ -1,0 +1,78 @@
+"""unlinked-own-library: a target uses functions that another library of its package defines, and is not linked to it.
+
+What it does
+    Reports programs and shared libraries whose own sources include a header of the package and use a function of a
+    class in it that a source of another target defines (`arm.hpp` and `arm.cpp`), where the target neither compiles
+    that source nor reaches a target that does by its links.
+
+Why it breaks
+    The linker reports undefined references for programs. A shared library is linked all the same, and fails in whatever
+    links or loads it.
+
+Severity
+    warning.
+
+Example
+    add_library(arm SHARED src/arm.cpp)
+    add_executable(wave src/wave.cpp)           # which includes arm/arm.hpp and calls functions of its class
+
+Use instead
+    target_link_libraries(wave arm)
+
+Not reported
+    Static libraries; libraries that others of the package link together with it; targets that are given something
+    that cannot be seen; functions that another class may have.
+"""
+
+from ...model.cmake.links import linked_items
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
+from .catkin_links import PACKAGE_VARIABLE, plain
+
+
+@rule(
+    severity="warning",
+    texts=Text(
+        "`{target}` uses `{function}` but does not link `{subject}`, which defines it",
+        "target_link_libraries({target} {subject})",
+    ),
+)
+def unlinked_own_library(view: TargetView, package: Package):
+    if package.build.unresolved:
+        return
+    targets = {t.name: t for t in package.build.targets}
+    compiling: dict[str, list[str]] = {}
+    for target in package.build.targets:
+        for source in target.sources:
+            compiling.setdefault(source, []).append(target.name)
+    links = {name: linked_items(package, name) for name in targets} if package.digest.own_calls else {}
+    known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
+    seen = set()
+    for source, other, function in package.digest.own_calls:
+        definers = set(compiling.get(other, ()))
+        for name in compiling.get(source, ()):
+            target = targets[name]
+            if (name, other) in seen or target.static or target.kind not in ("executable", "library", "module", "test"):
+                continue
+            libraries = sorted(n for n in definers if targets[n].kind == "library" and n != name)
+            if not libraries or not view.certain(c for c in target.conditions if "TESTING" not in c.text):
+                continue
+            items = links[name]
+            if items is None or any(
+                "$" in item and ((match := PACKAGE_VARIABLE.match(item)) is None or match[1] not in known)
+                for item in items
+            ):
+                continue
+            reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
+            if not definers.isdisjoint(reached) or any(plain(n) in plain(i) for n in libraries for i in items):
+                continue
+            users = [given for given in links.values() if given is not None and name in given]
+            if users and not any(definers.isdisjoint(given) for given in users):
+                continue  # what links the one links the other
+            seen.add((name, other))
+            data = {"target": name, "function": function}
+            tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)
+            doubts = (Doubt.INCOMPLETE, not tested or view.target.ros == 2 or Doubt.TEST)
+            yield Diagnostic(target.at, libraries[0], package.name, data, doubts=doubts)
+            break
