@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -22,9 +23,9 @@ from .python.text import dotted
 class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Installed things, read from literals (setup.py is parsed, never run).
 
-    entry_points: (name, module, line) of console_scripts. data_files: (destination, pattern, line), where glob(...) and
-    os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as written, `*` when
-    find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause each.
+    entry_points: (name, module, line, function) of console_scripts. data_files: (destination, pattern, line), where
+    glob(...) and os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as
+    written, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause each.
     python: of a setup.py, its imports and syntax like those of any Python file.
     script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
     are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).
@@ -32,7 +33,7 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     packages: tuple[str, ...] = ()
     package_dirs: dict[str, str] = {}
-    entry_points: tuple[tuple[str, str, int], ...] = ()
+    entry_points: tuple[tuple[str, str, int, str], ...] = ()
     data_files: tuple[tuple[str, str, int], ...] = ()
     scripts: tuple[str, ...] = ()
     requires: tuple[str, ...] = ()
@@ -40,6 +41,14 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
     python: PythonFile | None = None
     script_folders: tuple[tuple[str, str, int], ...] = ()
+
+    def places_of(self, folder: str, module: str) -> tuple[str, str]:
+        """The paths that a module of the package in this folder can have: as a file, and as a package."""
+        parts = module.split(".")
+        count = next((n for n in range(len(parts), 0, -1) if ".".join(parts[:n]) in self.package_dirs), 0)
+        root = self.package_dirs.get(".".join(parts[:count]), "")
+        path = posixpath.normpath(posixpath.join(folder, root, *parts[count:]))
+        return f"{path}.py", f"{path}/__init__.py"
 
 
 def extract(data: bytes, kind: str) -> SetupFile:
@@ -55,7 +64,7 @@ def extract(data: bytes, kind: str) -> SetupFile:
 
 _TOO_DEEP = Problem(1, "nested too deeply to be read")
 REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
-ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:[\w.]+)?(?:\s*\[.*\])?\s*\Z")
+ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:\s*([\w.]+))?(?:\s*\[.*\])?\s*\Z")
 # What each command of setuptools calls the folder that it installs programs into.
 _FOLDER_OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
 SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
@@ -157,8 +166,8 @@ class _Reader(Constants):
                 self.unresolved.append(f"{argument}: {item.what}")
         return found
 
-    def entry_points(self, value: Any) -> list[tuple[str, str, int]]:
-        found: list[tuple[str, str, int]] = []
+    def entry_points(self, value: Any) -> list[tuple[str, str, int, str]]:
+        found: list[tuple[str, str, int, str]] = []
         if isinstance(value, str):
             line = getattr(value, "line", 1)
             group = ""
@@ -167,7 +176,7 @@ class _Reader(Constants):
                 if opened is not None:
                     group = opened.group(1)
                 elif group in ("console_scripts", "gui_scripts") and (entry := ENTRY_POINT.match(text)):
-                    found.append((entry[1].rstrip(), entry[2], line + number))
+                    found.append((entry[1].rstrip(), entry[2], line + number, entry[3] or ""))
         elif isinstance(value, dict):
             for group in ("console_scripts", "gui_scripts"):
                 entries = value.get(group, [])
@@ -175,7 +184,7 @@ class _Reader(Constants):
                     if isinstance(item, UnknownValue):
                         self.unresolved.append(f"entry_points: {item.what}")
                     elif isinstance(item, str) and (entry := ENTRY_POINT.match(item)):
-                        found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1)))
+                        found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1), entry[3] or ""))
         elif isinstance(value, UnknownValue):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
@@ -258,11 +267,11 @@ def _setup_cfg(data: bytes) -> SetupFile:
     for entry in entries("options", "package_dir"):
         key, _, value = entry.partition("=")
         directories[key.strip()] = value.strip()
-    points: list[tuple[str, str, int]] = []
+    points: list[tuple[str, str, int, str]] = []
     for group in ("console_scripts", "gui_scripts"):
         for entry in entries("options.entry_points", group):
             if (found := ENTRY_POINT.match(entry)) is not None:
-                points.append((found[1].rstrip(), found[2], lines.of(entry)))
+                points.append((found[1].rstrip(), found[2], lines.of(entry), found[3] or ""))
     files: list[tuple[str, str, int]] = []
     if parser.has_section("options.data_files"):
         for destination in parser.options("options.data_files"):
@@ -294,7 +303,7 @@ def _pyproject(data: bytes) -> SetupFile:
     lines = _Lines(text)
     project = _table(document, "project")
     setuptools = _table(document, "tool", "setuptools")
-    points: list[tuple[str, str, int]] = []
+    points: list[tuple[str, str, int, str]] = []
     for table in (
         _table(project, "scripts"),
         _table(project, "gui-scripts"),
@@ -302,7 +311,8 @@ def _pyproject(data: bytes) -> SetupFile:
     ):
         for name, target in table.items():
             if isinstance(target, str):
-                points.append((name, target.partition(":")[0].strip(), lines.of(name)))
+                module, _, function = target.partition(":")
+                points.append((name, module.strip(), lines.of(name), function.partition("[")[0].strip()))
     packages = setuptools.get("packages", [])
     files = [
         (destination, file, lines.of(destination))

@@ -394,7 +394,7 @@ def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
                         name, program = given["PLUGIN"].strip('"'), given.get("EXECUTABLE", "").strip('"')
                         components[name] = (*components.get(name, ()), *((program,) if program else ()))
         elif file.kind == "setup_py":
-            for name, module, _ in one.entry_points:
+            for name, module, _, _ in one.entry_points:
                 module, _, function = module.partition(":")
                 stem = module.strip().replace(".", "/")
                 where = next((p for p in (f"{stem}.py", f"src/{stem}.py", f"{stem}/__init__.py") if p in paths), None)

@@ -506,7 +506,7 @@ class _Join:
             cpp_api=tuple(self.cpp_api(roles)),
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
-                for p, i in list_undefined(python, modules, self.files)
+                for p, i in list_undefined(python, modules, self.files, setup)
             ),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,

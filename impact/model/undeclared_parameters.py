@@ -71,7 +71,7 @@ def _find_starters(view: TargetView) -> dict[str, set[str]]:
         known = view.worked_out["programs", ""] = {}
         for package in view.workspace:
             names = [target.name for target in package.build.targets if target.kind == "executable"]
-            names += [name for _, setup in package.digest.setup for name, _, _ in setup.entry_points]
+            names += [name for _, setup in package.digest.setup for name, *_ in setup.entry_points]
             names += [path.rpartition("/")[2].removesuffix(".py") for path in package.digest.scripts]
             for name in names:
                 known.setdefault(name, set()).add(package.name)

@@ -40,7 +40,7 @@ setup(
 def test_ament_python():
     facts = extract(AMENT.encode(), "setup_py")
     assert facts.packages == ("walker", "walker.gait")
-    assert facts.entry_points == (("walk", "walker.walk", 23), ("run", "walker.run", 24))
+    assert facts.entry_points == (("walk", "walker.walk", 23, "main"), ("run", "walker.run", 24, "main"))
     assert facts.data_files == (
         ("share/ament_index/resource_index/packages", "resource/walker", 13),
         ("share/walker", "package.xml", 14),
@@ -90,8 +90,8 @@ GIVEN = [
     ("setup(data_files=[('d', [str(p) for p in x])])", "unresolved", ("data_files: `[str(p) for p in x]`",)),
     ("for p, d, f in os.walk('x'):\n    files.append((p, f))\nsetup(data_files=files)", "unresolved",
      ("data_files: `files`",)),
-    ("setup(entry_points='''\n[console_scripts]\na = b.c:main\n''')", "entry_points", (("a", "b.c", 3),)),
-    ("setup(entry_points={'gui_scripts': ['a=b:c [x]']})", "entry_points", (("a", "b", 1),)),
+    ("setup(entry_points='''\n[console_scripts]\na = b.c:main\n''')", "entry_points", (("a", "b.c", 3, "main"),)),
+    ("setup(entry_points={'gui_scripts': ['a=b:c [x]']})", "entry_points", (("a", "b", 1, "c"),)),
     ("setup(entry_points={'ros2cli.command': ['a=b:c']})", "entry_points", ()),
     ("setup(options={'install': {'install_scripts': 'a'},\n'develop': {'script_dir': 'b', 'user': True}})",
      "script_folders", (("install", "a", 1), ("develop", "b", 2))),
@@ -153,7 +153,7 @@ def test_setup_cfg():
     assert facts.packages == ("*",)
     assert facts.package_dirs == {"": "src"}
     assert facts.requires == ("numpy", "scipy")
-    assert facts.entry_points == (("walk", "walker.walk", 16),)
+    assert facts.entry_points == (("walk", "walker.walk", 16, "main"),)
     assert facts.data_files == (
         ("share/walker", "package.xml", 18),
         ("share/walker/launch", "launch/a.py", 20),
@@ -183,7 +183,7 @@ def test_pyproject():
     facts = extract(PYPROJECT.encode(), "pyproject")
     assert facts.packages == ("walker",)
     assert facts.package_dirs == {"": "src"}
-    assert facts.entry_points == (("walk", "walker.walk", 5),)
+    assert facts.entry_points == (("walk", "walker.walk", 5, "main"),)
     assert facts.data_files == (("share/walker", "package.xml", 11),)
     assert facts.scripts == ("bin/x",)
     assert facts.requires == ("numpy", "scipy")

@@ -156,7 +156,7 @@ def _scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
     found: dict[str, str] = {}
     for path, setup in package.digest.setup:
         folder = path.rpartition("/")[0]
-        for name, target, _ in setup.entry_points:
+        for name, target, _, _ in setup.entry_points:
             module, _, function = target.partition(":")
             stem = module.strip().replace(".", "/")
             for inside in (f"{folder}/{stem}.py", f"{folder}/src/{stem}.py", f"{folder}/{stem}/__init__.py"):

@@ -64,7 +64,7 @@ class ScriptSetup:
         for path, file in sorted(self._files.items()):
             if posixpath.basename(path) not in ("setup.py", "setup.cfg"):
                 continue
-            for name, module, line in file.entry_points:
+            for name, module, line, _ in file.entry_points:
                 if any(_is_data(self._package, other, name) for other in self._files.values()):
                     continue
                 if folders or name in started or _is_node(self._package, file, module):

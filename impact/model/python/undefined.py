@@ -1,5 +1,5 @@
 """Names that the Python files of a package use and that nothing defines: neither the file itself, nor the module of the
-package from which it imports them."""
+package from which it imports them; and functions that entry points name and their modules lack."""
 
 from __future__ import annotations
 
@@ -10,14 +10,18 @@ import msgspec
 
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
+from ...facts.setup import SetupFile
 
 
 def list_undefined(
-    files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]
+    files: Mapping[str, PythonFile],
+    others: Collection[str],
+    paths: Iterable[str],
+    setup: Iterable[tuple[str, SetupFile]] = (),
 ) -> Iterator[tuple[str, Import]]:
     """Such names, each as its import with the path it stands in; of those that the file uses itself the module is
     empty. files: the Python files of a package by their paths. others: what modules and libraries of the package are
-    called. paths: all its files, of which modules may be built that are called like them."""
+    called. paths: all its files, of which modules may be built that are called like them. setup: its setup files."""
     modules: dict[str, list[str]] = {}
     built: set[str] = set()
     for path in files:
@@ -36,6 +40,14 @@ def list_undefined(
                 built = built or {posixpath.basename(one).partition(".")[0] for one in paths}
                 if name not in built:
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
+
+
+    for path, told in setup:
+        for _, module, line, function in told.entry_points:
+            place = next((one for one in told.places_of(posixpath.dirname(path), module) if one in files), None)
+            name = function.partition(".")[0]
+            if place is not None and name and files[place].bound and f" {name} " not in files[place].bound:
+                yield path, Import(module, (name,), 0, line, 0, False, ())
 
 
 def _find_module(path: str, item: Import, modules: Mapping[str, list[str]]) -> str | None:

@@ -1,0 +1,92 @@
+"""nonexistent-setup-path: setup.py of an ament_python package names a file or folder that does not exist.
+
+What it does
+    Looks for the files that setup.py, setup.cfg or pyproject.toml gives to data_files and scripts, and for the folders
+    of the packages that it lists by name. Of data_files also folders, which setuptools does not copy.
+
+Why it breaks
+    setuptools stops: "can't copy 'resource/sled': doesn't exist or not a regular file", "package directory 'sled' does
+    not exist".
+
+Severity
+    error.
+
+Example
+    data_files=[('share/sled/launch', ['launch/sled.launch.py'])]       # and the file is launch/sled_launch.py
+
+Use instead
+    data_files=[('share/sled/launch', ['launch/sled_launch.py'])]
+
+Not reported
+    Patterns given to glob(), which may match nothing; paths that are put together of what only running setup.py tells;
+    folders that were not read, as a submodule is; packages that CMake builds, and those of ROS 1.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...facts.setup import SetupFile
+from ...model.cmake.build import At
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
+
+_PATTERN = re.compile(r"[*?\[]")
+
+
+class _Named(NamedTuple):
+    """What a setup file names, and its path below the package. kind: of the text that tells of its absence."""
+
+    name: str
+    path: str
+    line: int
+    kind: str
+
+
+@rule(
+    texts={
+        "file": Text("`{subject}` is to be installed, but it does not exist", "correct the path, or create the file"),
+        "folder": Text(
+            "`{subject}` is a folder, and data_files takes files alone", "name its files, as glob('{subject}/*') does"
+        ),
+        "package": Text(
+            "the Python package `{subject}` is to be installed, but there is no folder of this name",
+            "list the folders that are there, or use find_packages()",
+        ),
+    },
+)
+def nonexistent_setup_path(view: TargetView, package: Package):
+    if package.build_type != "ament_python":
+        return
+    for file, setup in package.digest.setup:
+        folder = posixpath.dirname(file)
+        if folder != package.path:
+            continue
+        for named in _list_named(setup):
+            place = posixpath.normpath(posixpath.join(folder, named.path))
+            inside = posixpath.relpath(place, folder or ".")
+            if inside.startswith("..") or view.workspace.is_unread(place):
+                continue
+            is_folder = package.has_files(inside)
+            if named.kind == "package" and (is_folder or f"{place}.py" in package.files):
+                continue  # modules stand among the packages
+            if place not in package.files:
+                kind = "folder" if is_folder else named.kind
+                yield Diagnostic(At(file, named.line), named.name, package.name, {}, kind)
+
+
+def _list_named(setup: SetupFile) -> Iterator[_Named]:
+    seen = set()
+    for _, path, line in setup.data_files:
+        if path and path not in seen and not _PATTERN.search(path) and not path.startswith("/"):
+            seen.add(path)
+            yield _Named(path, path, line, "file")
+    for path in setup.scripts:
+        if not _PATTERN.search(path) and not path.startswith("/"):
+            yield _Named(path, path, 1, "file")
+    for name in setup.packages:
+        _, package = setup.places_of("", name)
+        if name != "*":
+            yield _Named(name, posixpath.dirname(package), 1, "package")
