@@ -63,15 +63,14 @@ def unresolvable_key(view: TargetView, package: Package):
         seen.add(name)
         if target.ever_released(name) or view.private(name):
             continue  # unreleased-package says it
-        guess = nearest(name, view.known_names)
-        guess = guess if guess and view.available(guess) else None
         at = view.manifest_place(package, dependency)
         if target.known_key(name):
             if not target.has_rosdep_rules():
                 continue
-            data = {"platform": target.platform, "replacement": guess or ""}
-            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
-        elif guess:
+            instead = next(iter(target.keys_instead(name)), "")
+            data = {"platform": target.platform, "replacement": instead}
+            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if instead else "no rule")
+        elif (guess := nearest(name, view.known_names)) and view.available(guess):
             fix = _fix(view, package, name, guess)
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
