@@ -935,7 +935,8 @@ class TargetView:
                 certain,
                 found.required
                 or (found.how == "catkin" and not found.quiet)
-                or (found.name == "PkgConfig" and self._requires_modules(package)),
+                or (found.name == "PkgConfig" and self._requires_modules(package))
+                or self._is_called(package, found.name),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -984,6 +985,15 @@ class TargetView:
         found the program."""
         asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
         return any(self.certain(f.conditions) for f in asked)
+
+    def _is_called(self, package: Package, name: str) -> bool:
+        """Whether a command that a package defines is called wherever it was looked for, found or not."""
+        commands = self.providers.commands.get(self.target.ros, {})
+        return any(
+            name in commands.get(use.name, "").split() and "_FOUND" not in " ".join(c.text for c in use.conditions)
+            for use in package.build.uses
+            if use.kind == "command" and self.certain(use.conditions)
+        )
 
     def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""

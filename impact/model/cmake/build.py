@@ -185,7 +185,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
+    that are added a second time, with the place and conditions of both times."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -211,6 +212,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
+    repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

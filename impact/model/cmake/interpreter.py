@@ -149,6 +149,7 @@ class Interpreter:
         self.links: dict = {}
         self.catkin_package: At | None = None
         self.before_catkin_package: tuple[str, ...] = ()
+        self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -247,6 +248,7 @@ class Interpreter:
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
+            repeated=tuple(self.repeated),
         )
 
     def _project_by_variable(self) -> bool:
@@ -1056,6 +1058,17 @@ class Interpreter:
         """Collects a C++ standard set for everything."""
         if not self.silent:
             self.standards.append((number, self.place(at), is_default, by_flag, self.conditions))
+
+    def add_target(self, name: Word, kind: str) -> TargetDraft:
+        """Makes the target that add_library(), add_executable() or add_custom_target() adds."""
+        before, conditions = self.targets.get(name), self.under(name)
+        if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
+            opposite = {(held.text, not held.negated) for held in before.conditions}
+            if not any((held.text, held.negated) in opposite for held in conditions):
+                self.repeated[(str(name), self.place(name.at), merge(before.conditions, conditions))] = None
+        draft = self.new_target(name, kind, name.at)
+        draft.added = name.sure and kind not in ("imported", "alias")
+        return draft
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""
