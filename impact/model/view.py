@@ -545,6 +545,12 @@ class TargetView:
             environment = self._environments[ahead.name] = self._environment_on(ahead.target)
         return all_hold(conditions, environment) is not False
 
+    def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
+        """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
+        if found.state == "upcoming" and found.horizon is not None:
+            return self.active_on(found.horizon, conditions)
+        return found.is_missing
+
     def later_active(self, conditions: Iterable[Condition]) -> bool:
         """The same on the newest distro."""
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)

@@ -50,6 +50,8 @@ def unfound_command(view: TargetView, package: Package):
             continue
         if not reached.isdisjoint(owners) or not any(view.available(owner) for owner in owners):
             continue
+        if owners == ["genmsg"] and build.generated:
+            continue  # missing-message-generation reports it
         if use.name in find_test_commands(view) and view.closure(package).isdisjoint(owners):
             continue
         owner = _name_to_find(view, package, owners)
