@@ -59,7 +59,8 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     assert humble.state == "deprecated"
     # But a command of CMake that warns already is left in time.
     command = Symbol("command", "ament_target_dependencies", ("ament_cmake_target_dependencies",))
-    ahead = [Availabilities(DistroTarget(distro)).on_horizon(command).state for distro in ("jazzy", "kilted", "lyrical")]
+    distros = (DistroTarget(name) for name in ("jazzy", "kilted", "lyrical"))
+    ahead = [Availabilities(distro).on_horizon(command).state for distro in distros]
     assert ahead == ["present", "upcoming", "removed"]
     assert Availabilities(DistroTarget("noetic")).on_horizon(field).state == "unknown"
 
