@@ -137,15 +137,21 @@ class Availabilities:
         return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
 
     def on_horizon(self, symbol: Symbol) -> Availability:
-        """The same, and `upcoming` for what is there and is removed on the nearest horizon."""
+        """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for
+        platform libraries, and for names of CMake that are deprecated here already."""
         here = self.of(symbol)
         if here.state not in ("present", "deprecated"):
             return here
         for horizon, then in self._ahead:
             found = then.of(symbol)
-            if found.state == "removed" and (found.library or not horizon.platform):
+            if found.state == "removed" and (found.library or not horizon.platform or self._is_deprecated(here)):
                 return found.on(horizon)
         return here
+
+    def _is_deprecated(self, here: Availability) -> bool:
+        """Whether a reviewed row says that CMake warns of a name on the target."""
+        row = self._reviewed(here.symbol) if here.symbol.kind in ("command", "target", "variable") else None
+        return row is not None and row.state == "deprecated"
 
     @cached_property
     def _ahead(self) -> list[tuple[Horizon, Availabilities]]:

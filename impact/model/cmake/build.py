@@ -161,13 +161,15 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
     for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
-    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`)."""
+    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`). alike: of a variable that nothing can
+    have set, one that is set there and has one word more or less in its name."""
 
     kind: str
     name: str
     at: At
     context: str = ""
     conditions: tuple[Condition, ...] = ()
+    alike: str = ""
 
 
 def for_tests(conditions: Iterable[Condition]) -> bool:
@@ -186,7 +188,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
+    that are added a second time, with the place and conditions of both times."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -212,6 +215,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
+    repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

@@ -78,7 +78,7 @@ class IncludedHeaders:
             changed = f"{change.package} {path}"
             return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, changed=changed, ordered=True)
         found = view.header_availability(path)
-        if found is not None and (found.is_missing or found.state == "upcoming"):
+        if found is not None and view.breaks_under(found, include.conditions):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
             return HeaderLoss(found, fix=fix, ordered=True)
         found = view.lost_header(path)
