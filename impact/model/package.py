@@ -194,8 +194,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. interpreted: names of
-    Python files that CMake code gives to an interpreter.
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. shells: shell
+    scripts without an ending. interpreted: names of Python files that CMake code gives to an interpreter.
     """
 
     name: str
@@ -229,6 +229,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     mains: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
+    shells: tuple[str, ...] = ()
     interpreted: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     # Watched names that the package's own files #define.
@@ -412,6 +413,7 @@ class _Join:
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
         interpreted: set[str] = set()
+        shells: list[str] = []
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
         references, plugins, registered, setup, interfaces = [], [], [], [], []
@@ -427,6 +429,8 @@ class _Join:
             facts = file.facts
             if facts is None:
                 continue
+            if file.kind == "shell" and "." not in posixpath.basename(path):
+                shells.append(path)
             problems.extend((path, problem.line, problem.message) for problem in facts.problems)
             if isinstance(facts, CppFile):
                 self.cpp[path] = facts
@@ -499,6 +503,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
+            shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             defined=tuple(sorted(self.defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),

@@ -13,7 +13,7 @@ Severity
     error where the package's own configuration stops (an include directory that does not exist), for a library of its
     own that catkin_package() exports and no command makes, and for a library that is exported and not installed;
     warning where dependants are not linked to it, for headers that are not installed, or a misspelt name in DEPENDS;
-    note for other names in DEPENDS, and headers of a package that offers no library and that nobody here includes.
+    note for other names in DEPENDS.
 
 Example
     ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
@@ -22,7 +22,8 @@ Use instead
     ament_export_libraries(arm_controller)
 
 Not reported
-    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full.
+    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full; headers that no
+    rule installs where the package offers no library and nobody in the workspace includes them.
 """
 
 import posixpath
@@ -94,20 +95,20 @@ def _list_directories(view: TargetView, package):
 def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Include directories of the source space that have headers, none of which an install rule takes."""
     installs = [i for i in package.build.installs if view.active(i.conditions)]
-    if package.build.unresolved or any("$" in item for i in installs for item in i.items):
-        return
     exports = [e for e in package.build.exports if view.certain(e.conditions)]
     libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
     offers = any(e.how == "libraries" and e.item in libraries for e in exports)
-    offers = offers or package.name in view.workspace.includers
+    if not offers and package.name not in view.workspace.includers:
+        return  # nobody is there for the headers
+    if package.build.unresolved or any("$" in item for i in installs for item in i.items):
+        return
     for export in exports:
         folder = posixpath.normpath(export.item) if export.how == "include_dirs" else "$"
         headers = [path for path in package.digest.headers if path.startswith(f"{folder}/")]
         if not headers or any(is_installed(package, installs, path) for path in headers):
             continue
         data = {"directory": folder[len(package.path) :].lstrip("/"), "place": "${CATKIN_GLOBAL_INCLUDE_DESTINATION}"}
-        doubts = (Doubt.DISTURBS if offers else Doubt.UNCOMPILED,)
-        yield Diagnostic(export.at, data["directory"], package.name, data, "no header", doubts)
+        yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
 
 
 def _list_of_catkin(view: TargetView, package):

@@ -90,14 +90,14 @@ def _list_not_exported(view: TargetView, package, installs) -> Iterator[Diagnost
     libraries = {t.output_name or t.name: t for t in package.build.targets if t.kind in ("library", "module")}
     exports = {value.rpartition("/")[2] for e in package.manifest.exports for value in e.attributes.values()}
     exports |= {posixpath.basename(e.item) for e in package.build.exports if e.how == "plugin_description"}
-    seen: set[str] = set()
+    seen = {p.type for path, p in package.digest.plugins if posixpath.basename(path) in exports}
     for path, plugin in package.digest.plugins:
         name = posixpath.basename(plugin.library).removeprefix("lib").removesuffix(".so")
         target = libraries.get(name)
-        known = posixpath.basename(path) in exports or path in seen
-        if known or target is None or not view.certain(target.conditions) or is_installed(package, installs, path):
+        if plugin.type in seen or path in seen or target is None or is_installed(package, installs, path):
             continue
-        if not path.endswith(".xml") or role_of_folder(path[len(package.path) :].lstrip("/")):
+        aside = role_of_folder(path[len(package.path) :].lstrip("/"))
+        if aside or not path.endswith(".xml") or not view.certain(target.conditions):
             continue
         seen.add(path)
         base = plugin.base.partition("::")[0] or "BASE_PACKAGE"
