@@ -157,6 +157,16 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
         return self.installed and not for_tests(self.conditions)
 
 
+class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A file of CMake code that include() or add_subdirectory() reads, where it lies outside of the package or does not
+    exist. path: relative to the workspace root, or as written where it lies above that. command: what reads it."""
+
+    path: str
+    command: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
+
+
 class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
@@ -189,7 +199,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
-    that are added a second time, with the place and conditions of both times."""
+    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it asks for and that do not lie in the package."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -216,6 +226,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
     repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
+    read_elsewhere: tuple[ReadFile, ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

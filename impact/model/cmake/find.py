@@ -325,7 +325,10 @@ def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[W
         lower = name.lower()
         for suffix in ("SOURCE_DIR", "BINARY_DIR"):
             run.set_unknown(f"{lower}_{suffix}", call.at)
-        if call.name != "fetchcontent_getproperties":
+        if call.name == "fetchcontent_getproperties":
+            for variable in args[2::2]:
+                run.set_unknown(variable, call.at)
+        else:
             draft = run.new_target(name, "fetched", name.at)
             draft.alias_of = ""
 

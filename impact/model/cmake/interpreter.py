@@ -27,6 +27,7 @@ from .build import (
     FoundPackage,
     GeneratedInterfaces,
     Install,
+    ReadFile,
     UnknownCommand,
 )
 from .drafts import TargetDraft, Targets
@@ -160,6 +161,7 @@ class Interpreter:
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
         self.message_files: dict[tuple[str, At], None] = {}
+        self.read_elsewhere: dict[ReadFile, None] = {}
 
     def run(self) -> Build:
         """Interprets the package from its CMakeLists.txt on."""
@@ -255,6 +257,7 @@ class Interpreter:
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
             repeated=tuple(self.repeated),
+            read_elsewhere=tuple(self.read_elsewhere),
         )
 
     def _project_by_variable(self) -> bool:
@@ -1044,6 +1047,13 @@ class Interpreter:
         """Notes what could not be told."""
         if not self.silent:
             self.unresolved[(self.place(at or self.here()), reason)] = None
+
+    def add_read(self, path: str | None, command: str, name: Word) -> None:
+        """Collects a file of CMake code that lies outside of the package, or that does not exist. path: as relative()
+        gives it. name: how it is written."""
+        place = self.shown(name) if path is None else path
+        if not self.silent and self.call_site is None and name.sure and "$" not in place:
+            self.read_elsewhere[ReadFile(place, command, self.place(name.at), self.under(name))] = None
 
     def add_tools(self, args: list[Word]) -> None:
         """Collects the programs that the arguments of ExternalProject_Add() or FetchContent_Declare() start: what

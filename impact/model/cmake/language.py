@@ -95,12 +95,16 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     path = run.relative(run.resolve(name))
     if path is None:
         if not optional:
+            run.add_read(path, call.name, name)
             run.give_up(name.at, f"include({run.shown(name)}) is outside the tree")
         return
     if run.run_file(path, name.at) is not None:
+        if not optional and not run.inside(path):
+            run.add_read(path, call.name, name)
         return
     installed = run.exported_file(name)
     if (installed is None or run.run_file(installed, name.at) is None) and not optional:
+        run.add_read(path, call.name, name)
         run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
 
 
@@ -125,9 +129,12 @@ def add_subdirectory(run: Interpreter, call: CommandCall, args: list[Word]) -> i
     for directory in args if call.name == "subdirs" else args[:1]:
         relative = run.relative(run.resolve(directory))
         if relative is None:
+            run.add_read(relative, call.name, directory)
             run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) is outside the tree")
             continue
         signal = run.run_file(posixpath.join(relative, "CMakeLists.txt"), directory.at, relative)
+        if signal is None or not run.inside(f"{relative}/"):
+            run.add_read(relative, call.name, directory)
         if signal is None:
             run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) has no CMakeLists.txt in the tree")
         elif signal == FATAL:

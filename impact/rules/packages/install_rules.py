@@ -20,10 +20,13 @@ def list_installing(view: TargetView) -> Iterator[tuple[Package, list[Install]]]
 
 
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:
-    """Whether an install rule takes a file."""
+    """Whether an install rule takes a file, or may take it: a path with a variable may be any that ends like it."""
     for install in installs:
         for item in install.items:
-            if "$" in item:
+            name = posixpath.basename(item)
+            if "$" in item and ("$" in name or install.kind not in ("files", "programs")):
+                return True
+            if "$" in item and name == posixpath.basename(path):
                 return True
             item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
             if path == item:
