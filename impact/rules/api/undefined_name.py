@@ -60,8 +60,7 @@ def undefined_name(view: TargetView):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
-                doubts = (*_doubts_of(use), not name.startswith(".") or Doubt.INCOMPLETE)
-                yield Refused(use, name.lstrip("."), "python 2", doubts=doubts, conditions=use.conditions)
+                yield Refused(use, name.lstrip("."), "python 2", doubts=_doubts_of(use), conditions=use.conditions)
 
     yield from report_refused(view, find)
 
@@ -77,4 +76,5 @@ def _is_of_python2(name: str) -> bool:
 
 
 def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
-    return (Doubt.LATE,) if use.lazy else ()
+    doubts = (Doubt.LATE,) if use.lazy else ()
+    return (*doubts, Doubt.INCOMPLETE) if use.names[0].startswith(".") else doubts
