@@ -469,7 +469,7 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        from .python.undefined import list_undefined
+        from .python.undefined import list_undefined, list_undefined_functions
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -520,7 +520,10 @@ class _Join:
             cpp_api=tuple(self.cpp_api(roles)),
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
-                for p, i in list_undefined(python, modules, self.files, setup)
+                for p, i in (
+                    *list_undefined(python, modules, self.files),
+                    *list_undefined_functions(python, setup),
+                )
             ),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,

@@ -199,7 +199,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
-    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it asks for and that do not lie in the package."""
+    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
+    asks for and that do not lie in the package."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
