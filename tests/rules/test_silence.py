@@ -85,6 +85,24 @@ FLOE_DEPENDS = (
 )
 
 SILENT = {
+    "what the interfaces of the package rest on": Silent(
+        "ungiven-package",
+        ("jazzy",),
+        ament(
+            "find_package(geometry_msgs REQUIRED)\nfind_package(rosidl_default_generators REQUIRED)\n"
+            'rosidl_generate_interfaces(sled "msg/Pull.msg" DEPENDENCIES geometry_msgs)\n'
+            "add_executable(drive drive.cpp)\n"
+            "rosidl_get_typesupport_target(typesupport sled rosidl_typesupport_cpp)\n"
+            "target_link_libraries(drive ${typesupport})",
+            "geometry_msgs",
+            "buildtool_depend:rosidl_default_generators",
+            "exec_depend:rosidl_default_runtime",
+            "<member_of_group>rosidl_interface_packages</member_of_group>",
+            drive_cpp="#include <geometry_msgs/msg/point.hpp>\nint main() { return 0; }\n",
+        )
+        | {"msg/Pull.msg": "geometry_msgs/Point at\n"},
+        ("CMakeLists.txt", "target_link_libraries(drive ${typesupport})", ""),
+    ),
     "what every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),

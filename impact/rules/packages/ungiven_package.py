@@ -25,6 +25,7 @@ Not reported
 """
 
 import re
+from collections.abc import Set
 
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import TargetView
@@ -71,6 +72,8 @@ def ungiven_package(view: TargetView, package: Package):
         for target in include.targets:
             if target not in reach:
                 items = _find_given(targets, target)
+                if items is not None:
+                    items |= _list_of_interfaces(package, items)
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
                 # A target of the package may be called like the package, and brings none of what that declares.
@@ -95,6 +98,16 @@ def ungiven_package(view: TargetView, package: Package):
 
 
 _VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
+
+
+def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
+    """The packages of the interfaces that those of the package itself rest on, whose targets bring them along."""
+    return {
+        name
+        for made in package.build.generated
+        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
+        for name, _ in made.dependencies
+    }
 
 
 def _find_given(targets, name: str) -> set[str] | None:
