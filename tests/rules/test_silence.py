@@ -103,6 +103,18 @@ SILENT = {
         | {"msg/Pull.msg": "geometry_msgs/Point at\n"},
         ("CMakeLists.txt", "target_link_libraries(drive ${typesupport})", ""),
     ),
+    "headers of what the build downloads": Silent(
+        "removed-header",
+        ("humble",),
+        ament(
+            "include(FetchContent)\nFetchContent_Declare(Catch2 GIT_REPOSITORY https://example.org/Catch2.git)\n"
+            "FetchContent_MakeAvailable(Catch2)\nadd_executable(weigh weigh.cpp)\n"
+            "target_link_libraries(weigh Catch2::Catch2)",
+            "catch2",
+            weigh_cpp="#include <catch2/catch_test_macros.hpp>\nint main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "FetchContent_MakeAvailable(Catch2)\n", ""),
+    ),
     "what every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),
