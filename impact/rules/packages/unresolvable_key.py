@@ -28,7 +28,7 @@ import re
 from bisect import bisect_left
 from functools import lru_cache
 
-from ...model.misspelling import is_slip, nearest
+from ...model.misspelling import is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
@@ -65,7 +65,7 @@ def unresolvable_key(view: TargetView, package: Package):
         seen.add(name)
         if target.ever_released(name) or view.private(name):
             continue  # unreleased-package says it
-        guess = nearest(name, view.known_names)
+        guess = view.known_names.nearest(name)
         guess = guess if guess and view.available(guess) else None
         at = view.manifest_place(package, dependency)
         if target.known_key(name):
