@@ -120,12 +120,14 @@ class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3."""
+    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3. plain:
+    the first line of the file says that `python` runs it, which Python 2 may be."""
 
     needs: int
     what: str
     at: At
     role: str
+    plain: bool = False
 
 
 class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -1068,7 +1070,9 @@ class _Join:
                         )
             syntax.extend(SyntaxUse(2, p.message, At(path, p.line), role) for p in facts.python2_only)
             if facts.needs is not None:
-                syntax.append(SyntaxUse(facts.needs[0], facts.needs[2], At(path, facts.needs[1]), role))
+                minor, line, what = facts.needs
+                plain = "python" in facts.interpreter and "python3" not in facts.interpreter
+                syntax.append(SyntaxUse(minor, what, At(path, line), role, plain))
         return imports, names, syntax, modules
 
     def python_role(self, path: str) -> str:

@@ -1037,6 +1037,9 @@ class TargetView:
         if self.target.version(name) is not None and all(p.name != name for p in providers):
             # A library that is released as a package (fcl, octomap) writes its own.
             providers = (*providers, Provider("ros", name, "", False))
+        # Also where its module has more words in its name than the package (orocos-bfl of bfl).
+        words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.version(word) is not None)
+        providers = (*providers, *(Provider("ros", word, "", False) for word in words))
         testing = for_tests(found.conditions)
         yield Need(
             "pkg-config",

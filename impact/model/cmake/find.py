@@ -110,6 +110,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             )
         )
     if not flags & {"CONFIG", "NO_MODULE"}:
+        if required:
+            run.use_feature(f"Find{name}", name.at)
         _run_module(run, call, str(name))
     if required:
         found = CMakeValue((word("1", call.at),))

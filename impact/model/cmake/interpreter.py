@@ -31,7 +31,7 @@ from .build import (
     UnknownCommand,
 )
 from .drafts import TargetDraft, Targets
-from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
+from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES, SINCE
 from .values import (
     LITERAL,
     MAX_TEXT,
@@ -305,6 +305,7 @@ class Interpreter:
         """Runs one command."""
         self.spend(1)
         name = self.command = call.name
+        self.use_feature(name, call.at)
         handler = HANDLERS.get(name)
         if handler is not None:
             if name not in BUILTIN_COMMANDS:
@@ -349,6 +350,12 @@ class Interpreter:
         self.steps += steps
         if self.steps > MAX_STEPS:
             raise _TooMuch("more work than 40,000 commands")
+
+    def use_feature(self, name: str, at: At) -> None:
+        """Notes a command, module or policy that only newer versions of CMake have."""
+        since = SINCE.get(name)
+        if since and not self.silent and name not in self.definitions:
+            self.uses[UnknownCommand("feature", name, self.place(at), since, self.conditions)] = None
 
     def use_command(self, call: CommandCall) -> None:
         """Notes a command that neither CMake nor the tree defines."""
@@ -965,8 +972,10 @@ class Interpreter:
         return bool(separator) and any(made.how == "rosidl" and made.target == base for made in self.generated)
 
     def is_command(self, name: str) -> bool | None:
-        """True when CMake or the tree defines this command."""
+        """True when the tree or any version of CMake defines this command."""
         name = name.lower()
+        if name in SINCE and name not in self.definitions:
+            return None
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
     def path_exists(self, path: str, directory: bool) -> bool | None:

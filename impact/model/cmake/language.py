@@ -83,6 +83,8 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             if path is not None and run.run_file(path, call.at) is not None:
                 return
         add_module(run, str(name))
+        if not optional:
+            run.use_feature(str(name), name.at)
         if name in MODULES:
             if name.startswith("Find") and not name.startswith("FindPackage"):
                 place = run.place(name.at)
@@ -186,7 +188,9 @@ def cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_policy(VERSION) and CMP0054."""
     if len(args) >= 2 and args[0] == "VERSION":
         run.minimum_policy = max(run.minimum_policy, version_key(args[1].split("...")[-1]))
-    elif args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
+    elif args[:1] == ["SET"] and len(args) > 1:
+        run.use_feature(str(args[1]), args[1].at)
+    if args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
         run.minimum_policy = max(run.minimum_policy, (3, 1))
 
 

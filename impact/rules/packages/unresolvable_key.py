@@ -28,7 +28,7 @@ import re
 from bisect import bisect_left
 from functools import lru_cache
 
-from ...model.misspelling import is_slip, nearest
+from ...model.misspelling import is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
@@ -72,7 +72,7 @@ def unresolvable_key(view: TargetView, package: Package):
             instead = next(iter(target.keys_instead(name)), "")
             data = {"platform": target.platform, "replacement": instead}
             yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if instead else "no rule")
-        elif (guess := nearest(name, view.known_names)) and view.available(guess):
+        elif (guess := view.known_names.nearest(name)) and view.available(guess):
             fix = _fix(view, package, name, guess)
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
