@@ -29,7 +29,7 @@ from ...model.cmake.build import At
 from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import has_only_data, is_installed, list_installing, list_references
+from .install_rules import is_installed, list_installing, list_references
 
 
 @rule(
@@ -52,7 +52,7 @@ def uninstalled_file(view: TargetView):
     references = list_references(view)
     for package, installs in list_installing(view):
         used = references.get(package.name, {})
-        if has_only_data(package, installs):
+        if not installs and package.build_type == "catkin" and not package.build.targets:
             yield from _list_nothing(package, opened=bool(used))
         else:
             yield from _list_opened(package, installs, used.get("file", set()))
