@@ -4,9 +4,9 @@ What it does
     Reports sources of targets, files given to test commands, and what include() and add_subdirectory() read, where
     neither the tree has the file nor the build makes it, data files and modules that setup.py names (ament_python), and
     launch files, parameters and robot descriptions that a launch file opens in the share folder of a package of the
-    workspace. Of paths in CMake that are there, those that
-    lead out of the package's folder (`../common.cmake`), that begin in somebody's home folder, or below
-    `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the package.
+    workspace. Of paths in CMake that are there, those that lead out of the package's folder (`../common.cmake`), that
+    begin in somebody's home folder, or below `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the
+    package.
 
 Why it breaks
     CMake stops: "Cannot find source file", "could not find requested file"; setuptools stops: "can't copy". A release
