@@ -25,8 +25,8 @@ Use instead
     add_executable(sled_node src/sled_node.cpp)
 
 Not reported
-    Files that the build makes; paths that are not known; folders that were not read, as a submodule is; folders of
-    headers in other packages, which need not exist.
+    Files that the build makes, and sources in folders that it may make; paths that are not known; folders that were not
+    read, as a submodule is; folders of headers in other packages, which need not exist.
 """
 
 import posixpath
@@ -143,6 +143,9 @@ def _judge(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
     file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
     if use.how == "install" or (use.how == "read" and not file.endswith((".cmake", ".txt"))):
         return "", ""
+    folder = posixpath.dirname(path)
+    if use.how == "source" and folder != package.path and folder not in package.folders:
+        return "", ""  # generators make folders of their own
     return (use.how, path[len(package.path) :].lstrip("/")) if _is_absent(view, package, file) else ("", "")
 
 

@@ -90,11 +90,12 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
 
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
     """Scripts that a launch file starts, or that lie beside programs that are installed, and that no rule installs."""
-    folders = {posixpath.dirname(item) for i in installs if i.kind == "programs" for item in i.items}
+    programs = [item for i in installs if i.kind == "programs" for item in i.items]
+    folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     for path in (*package.digest.scripts, *package.digest.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
-        if (name in scripts or beside) and not is_installed(package, installs, path):
+        if (name in scripts or beside) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
