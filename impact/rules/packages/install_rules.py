@@ -39,11 +39,6 @@ def is_installed(package: Package, installs: list[Install], path: str) -> bool:
     return False
 
 
-def has_only_data(package: Package, installs: list[Install]) -> bool:
-    """Whether a package of catkin builds nothing and installs nothing."""
-    return not installs and package.build_type == "catkin" and not package.build.targets
-
-
 def list_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
     """Package to what the workspace's launch files and scripts start or open in it: kind to names."""
     found: dict[str, dict[str, set[str]]] = {}

@@ -83,7 +83,8 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             item = link.item if link.how == "link" else known.name
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
-            few = Together("passed on", 1 if is_only_loaded(view, package) else EXPORTED)
+            loaded = link.how == "ament" and is_only_loaded(view, package)
+            few = Together("passed on by plugins", 1) if loaded else Together("passed on", EXPORTED)
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
 
 

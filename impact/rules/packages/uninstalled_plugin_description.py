@@ -29,7 +29,7 @@ from ...model.cmake.build import At
 from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import has_only_data, is_installed, list_installing
+from .install_rules import is_installed, list_installing
 
 
 @rule(
@@ -49,8 +49,7 @@ from .install_rules import has_only_data, is_installed, list_installing
 )
 def uninstalled_plugin_description(view: TargetView):
     for package, installs in list_installing(view):
-        if not has_only_data(package, installs):
-            yield from _list_descriptions(view, package, installs)
+        yield from _list_descriptions(view, package, installs)
         yield from _list_not_exported(view, package, installs)
 
 
