@@ -5,6 +5,7 @@ their modules lack."""
 from __future__ import annotations
 
 import posixpath
+import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 
@@ -85,13 +86,18 @@ class _Modules:
 
     def lacks(self, module: str) -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none."""
-        head, *rest = module.split(".")
-        roots = self._roots.get(head, ()) if rest else ()
-        if not roots or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
+        rest = module.split(".")[1:]
+        meant = self._meant(module) if rest else set()
+        if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
             return False
-        meant = {"/".join((root, *rest)) for root in roots}
         there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
         return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
+
+    def _meant(self, module: str) -> set[str]:
+        """The paths, without endings, that a module has below folders which its first name may be."""
+        head, *rest = module.split(".")
+        roots = self._roots.get(head, ()) if head not in sys.stdlib_module_names else ()
+        return {"/".join((root, *rest)) for root in roots}
 
     def find(self, path: str, item: Import) -> str | None:
         """The file that an import names, None where it may be another one or none."""
@@ -105,7 +111,8 @@ class _Modules:
             near = near or self._by_name.get(posixpath.basename(exact), ())
             found = [one for one in near if _stem_of(one) == exact]
         elif "/" in ending:
-            found = [one for one in near if f"/{_stem_of(one)}".endswith(f"/{ending}")]
+            meant = self._meant(item.module)
+            found = [one for one in near if _stem_of(one) in meant]
         else:  # of one word there are many modules elsewhere; the one beside a program comes first
             beside = posixpath.join(posixpath.dirname(path), f"{ending}.py")
             found = [beside] if list(near) == [beside] else []

@@ -79,6 +79,8 @@ def ungiven_package(view: TargetView, package: Package):
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
+                if any(item in targets and targets[item].kind == "generated" for item in items or ()):
+                    given.update(name for made in package.build.generated for name, _ in made.dependencies)
                 reach[target] = (
                     None if items is None else (view.spread(s for n in given if n for s in (n, n.lower())), hiding)
                 )
