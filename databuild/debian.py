@@ -517,19 +517,18 @@ def main(arguments: list[str] | None = None) -> None:
     """The command line described at the top."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("work", type=Path, help="folder that keeps what was read")
-    parser.add_argument("--suite", action="append", default=[], metavar="NAME=APT_CONF", help="oldest first")
+    parser.add_argument("--suite", action="append", default=[], metavar="NAME=APT_CONF", help="read it first")
     parser.add_argument("--clones", type=Path, help="read older versions at the tags of the git clones in this folder")
     parser.add_argument("--output", type=Path, default=DATA)
     asked = parser.parse_args(arguments)
     run = Run(asked.work, lambda text: print(text, flush=True))
-    names = []
     for item in asked.suite:
         name, _, configuration = item.partition("=")
-        names.append(name)
         run.read_suite(name, Path(configuration).absolute())
+    names = sorted(run.suites(), key=lambda name: _ORDER.get(name, len(_ORDER)))
     suites = {name: {facts.library: facts for facts in run.facts(name)} for name in names}
-    if not any(suites.values()):
-        parser.error("nothing was read; give a --suite for each Debian release")
+    if not suites:
+        parser.error(f"{asked.work}: nothing was read yet; give a --suite for each Debian release")
     print(library_file.write(asked.output / "libraries.sqlite", suites, run.texts), flush=True)
     derive(suites, run.texts, asked.clones, asked.output)
 

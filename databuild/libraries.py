@@ -378,16 +378,15 @@ class Run:
             if done.exists():
                 continue
             files = self._download(suite, configuration, packages)
+            missing = len(packages) - len(files)
             facts = read_packages(library, files, self.texts)
-            self.texts.commit()
-            done.parent.mkdir(parents=True, exist_ok=True)
-            write_file(done, _encode(facts))
+            self.keep(suite, facts)
             for _, file in files:
                 file.unlink()
             size = sum(package.size for package in packages) / 1e6
             self._say(
                 f"{suite} {place}/{len(by_library)} {library} {facts.version}: {len(packages)} packages, "
-                f"{size:.1f} MB, {len(facts.headers)} headers, {len(facts.unread)} not read"
+                f"{size:.1f} MB, {len(facts.headers)} headers, {len(facts.unread) + missing} not read"
             )
 
     def _download(
@@ -405,6 +404,17 @@ class Run:
                 capture_output=True,
             )
         return [(package, file) for package in packages if (file := _downloaded(folder, package)) is not None]
+
+    def suites(self) -> list[str]:
+        """The suites of which something was read."""
+        return [folder.name for folder in (self.work / "read").iterdir()]
+
+    def keep(self, suite: str, facts: LibraryFacts) -> None:
+        """Keeps what was read of a library."""
+        self.texts.commit()
+        folder = self.work / "read" / suite
+        folder.mkdir(parents=True, exist_ok=True)
+        write_file(folder / f"{facts.library}.msgpack", _encode(facts))
 
     def facts(self, suite: str) -> Iterator[LibraryFacts]:
         """The libraries of a suite that were read."""

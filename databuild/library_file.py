@@ -3,6 +3,7 @@ which library a Debian package belongs to."""
 
 from __future__ import annotations
 
+import re
 import sqlite3
 import tempfile
 from collections import defaultdict
@@ -29,10 +30,12 @@ _SCHEMA = """
 CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
   names BLOB NOT NULL, versions TEXT NOT NULL, PRIMARY KEY(name, ros)) WITHOUT ROWID;
 CREATE TABLE debian(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE target(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 """
 """package: as in surfaces.sqlite, of no ROS generation (0), with what headers declare apart, in names, in the form of
 data; versions: `SUITE=VERSION ...`, oldest first. debian: the
-development packages that were read."""
+development packages that were read. target: CMake targets with a namespace, and the library whose configurations
+export them in some version, where that is one."""
 
 
 class Counts(NamedTuple):
@@ -63,6 +66,7 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
                 versions += len(each)
                 headers += sum(len(facts.headers) for _, facts in each)
                 db.execute("INSERT INTO package VALUES(?, 0, ?, ?, ?, ?, ?)", (name, *row))
+            db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_targets(by_library).items()))
             db.executemany("INSERT INTO debian VALUES(?, ?)", sorted(debian.items()))
             db.commit()
             db.execute("VACUUM")
@@ -70,6 +74,24 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
             for piece in read_chunks(fresh):
                 output.write(piece)
     return Counts(len(by_library), versions, headers, file.stat().st_size)
+
+
+def _targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> dict[str, str]:
+    """Exported targets with a namespace to the library that has them. A library may make targets for what it needs."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for library, each in by_library.items():
+        for _, facts in each:
+            spaces = {fold(name) for name in facts.cmake}
+            for target in facts.targets:
+                space, colons, _ = target.name.partition("::")
+                if colons and fold(space) in spaces:
+                    found[target.name].add(library)
+    return {name: libraries.pop() for name, libraries in found.items() if len(libraries) == 1}
+
+
+def fold(name: str) -> str:
+    """A CMake name without case and marks."""
+    return re.sub(r"[\W_]", "", name.lower())
 
 
 def _packed(

@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 
 from ....edges.memory import cached_method
+from ..platform import neighbours
 from ..snapshot import DATA, SnapshotError
 
 INFERRED = 1 << 15
@@ -25,14 +26,16 @@ class AptGraph(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Apt:
-    """The graph as one platform sees it. Of a platform whose index was not read, all that any other suite brings
-    counts: such an answer may say that something is there, and never that it is missing."""
+    """The graph as one platform sees it. Of a platform whose index was not read, all counts that the releases before
+    and after it bring, or any of them where one of these two was not read: such an answer may say that something is
+    there, and never that it is missing."""
 
     def __init__(self, graph: AptGraph, platform: str):
         self._graph = graph
         self._place = {name: place for place, name in enumerate(graph.packages)}
+        near = neighbours(platform, graph.suites)
         self._inferred = platform not in graph.suites
-        self._mask = INFERRED - 1 if self._inferred else 1 << graph.suites.index(platform)
+        self._mask = sum({1 << graph.suites.index(one) for one in near}) if all(near) else INFERRED - 1
 
     @cached_property
     def base(self) -> frozenset[str]:

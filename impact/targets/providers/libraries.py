@@ -1,0 +1,151 @@
+"""System libraries as Debian packages them, by release: which library a header or CMake target is of, whether it is
+compiled, and how it is linked. Looked up in `data/libraries.sqlite` (databuild/debian.py), a library at a time.
+
+Of Ubuntu no packages were read. An LTS release takes what Debian has at the time, so a library there is neither older
+than in the Debian release before it nor newer than in the one after it: what both of these say holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+from ....edges.memory import cached_method
+from ..platform import neighbours
+from ..snapshot import DATA, SnapshotError
+from ..surface.store import StoredSurfacesError, Surfaces
+from .providers import default_providers
+
+if TYPE_CHECKING:
+    from ..surface.surface import BuildSurface
+
+_NAMED = ("cmake_names", "targets", "unknown")
+
+
+class Linking(NamedTuple):
+    """How a header's library is linked. compiled: its package has something to link; libraries: that, without `lib`.
+    names: CMake packages and targets, pkg-config files and variables that bring it."""
+
+    library: str
+    compiled: bool
+    libraries: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+class Presence(NamedTuple):
+    """How a platform stands to a part of a library. here: None where its releases do not tell. version: the oldest that
+    the platform may have; first: the oldest that was read and has the part. lost: a later one was read that lacks it.
+    """
+
+    library: str
+    here: bool | None
+    version: str
+    first: str
+    lost: bool
+
+
+class SystemLibraries:
+    """The shipped file. Raises SnapshotError when it cannot be read."""
+
+    def __init__(self) -> None:
+        try:
+            self._file = Surfaces(DATA / "libraries.sqlite")
+        except StoredSurfacesError as error:
+            raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+
+    def _first(self, query: str, value: str) -> str:
+        return next(iter(self._file.columns(query, value)), "")
+
+    @cached_method
+    def of_package(self, debian: str) -> str:
+        """The library that a Debian development package is of; empty where it was not read."""
+        return self._first("SELECT library FROM debian WHERE name = ?", debian)
+
+    @cached_method
+    def versions(self, library: str) -> dict[str, str]:
+        """The version of a library in each Debian release that was read, oldest first."""
+        told = self._first("SELECT versions FROM package WHERE name = ?", library)
+        found = dict(one.split("=") for one in told.split())
+        return {f"debian {suite}": version for suite, version in found.items()}
+
+    @cached_method
+    def packages(self, library: str) -> frozenset[str]:
+        """The development packages of a library."""
+        return frozenset(self._file.columns("SELECT name FROM debian WHERE library = ?", library))
+
+    def around(self, library: str, platform: str) -> tuple[str, str]:
+        """The versions between which a platform's lies; empty for one that is not known."""
+        known = self.versions(library)
+        before, after = neighbours(platform, known)
+        return known.get(before, ""), known.get(after, "")
+
+    @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
+    def build(self, library: str, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
+        """What a version gives to CMake and the linker. of: these fields alone."""
+        history = self._file.history(library, 0)
+        return history.build(version, of) if history is not None else None
+
+    @cached_method
+    def linking(self, header: str, platform: str) -> Linking | None:
+        """How to link the library of a header; None where it is of no library that was read, or a release of it was
+        not. Of several versions the platform's counts, or the one that is nearest."""
+        provider = next(iter(default_providers().header(header)), None)
+        library = self.of_package(provider.package) if provider is not None and provider.kind == "system" else ""
+        version = next(filter(None, self.around(library, platform)), "") if library else ""
+        build = self.build(library, version) if version else None
+        if build is None:
+            return None
+        paths = {header, *_without_root(header, build.include_dirs)}
+        row = next((one for one in build.headers if one.include in paths), None)
+        if row is None:
+            return None
+        libraries = tuple(row.source.split())
+        mine = set(libraries)
+        configs = (one.split(" ") for one in build.pkgconfig)
+        names = (
+            *build.cmake_names,
+            *(target.name for target in build.targets),
+            *(name for name, *stems in configs if mine.intersection(stems)),
+            *build.variables,
+        )
+        return Linking(library, bool(libraries), libraries, names)
+
+    def target(self, name: str, platform: str) -> Presence | None:
+        """How a platform stands to a CMake target that a library exports in some version; None where none does."""
+        library = self._first("SELECT library FROM target WHERE name = ?", name)
+        return self._presence(library, platform, lambda build: _exports(build, name)) if library else None
+
+    def _presence(self, library: str, platform: str, has: Callable[[BuildSurface], bool | None]) -> Presence:
+        versions = dict.fromkeys(self.versions(library).values())
+        told = {version: has(build) for version in versions if (build := self.build(library, version, _NAMED))}
+        before, after = self.around(library, platform)
+        states = {told.get(version) for version in (before, after) if version}
+        # What the oldest release lacks and a later one has came with that: it was not there before either.
+        complete = (before and after) or (after and told.get(after) is False)
+        here = states.pop() if complete and len(states) == 1 else None
+        lost = any(told[one] and told[two] is False for one, two in pairwise(told))
+        return Presence(library, here, before or after, next((one for one in told if told[one]), ""), lost)
+
+
+def _exports(build: BuildSurface, name: str) -> bool | None:
+    """Whether a build exports a target, None where that cannot be told."""
+    if any(target.name == name for target in build.targets):
+        return True
+    return None if any(part == "targets" for part, _ in build.unknown) or not build.cmake_names else False
+
+
+def _without_root(header: str, roots: tuple[str, ...]) -> Iterator[str]:
+    """A header as it lies below the folders that flags name, which it is written with."""
+    parts = header.split("/")
+    for place in range(1, len(parts)):
+        folder = "/".join(parts[:place])
+        if any(f"/{root}".endswith(f"/{folder}") for root in roots):
+            yield "/".join(parts[place:])
+
+
+@cache
+def system_libraries() -> SystemLibraries:
+    """The shipped libraries, one for each process."""
+    return SystemLibraries()
