@@ -34,6 +34,14 @@ class Linking(NamedTuple):
     names: tuple[str, ...]
 
 
+class Including(NamedTuple):
+    """What a header of a version of a library includes."""
+
+    library: str
+    version: str
+    paths: tuple[str, ...]
+
+
 class Presence(NamedTuple):
     """How a platform stands to a part of a library. here: None where its releases do not tell. version: the oldest that
     the platform may have; first: the oldest that was read and has the part. lost: a later one was read that lacks it.
@@ -88,16 +96,42 @@ class SystemLibraries:
         return history.build(version, of) if history is not None else None
 
     @cached_method
+    def of_header(self, header: str) -> str:
+        """The library that a header is of; empty for none that was read."""
+        provider = next(iter(default_providers().header(header)), None)
+        return self.of_package(provider.package) if provider is not None and provider.kind == "system" else ""
+
+    def included(self, header: str, platform: str) -> Including | None:
+        """What a header includes in a platform's version, or in either of those between which that lies; None where
+        neither has it, or it is of no library that was read."""
+        library = self.of_header(header)
+        versions = tuple(filter(None, self.around(library, platform))) if library else ()
+        known = self._file.included(library, 0) if versions else None
+        found: dict[str, None] = {}
+        there = False
+        for version in versions if known is not None else ():
+            for path in _written(header, self._roots(library, version)):
+                if (written := known.written(path, version)) is not None:
+                    found.update((known.answer(one, path, version), None) for one in written)
+                    there = True
+                    break
+        return Including(library, versions[0], tuple(found)) if there else None
+
+    @cached_method
+    def _roots(self, library: str, version: str) -> tuple[str, ...]:
+        build = self.build(library, version, ("include_dirs",))
+        return build.include_dirs if build is not None else ()
+
+    @cached_method
     def linking(self, header: str, platform: str) -> Linking | None:
         """How to link the library of a header; None where it is of no library that was read, or a release of it was
         not. Of several versions the platform's counts, or the one that is nearest."""
-        provider = next(iter(default_providers().header(header)), None)
-        library = self.of_package(provider.package) if provider is not None and provider.kind == "system" else ""
+        library = self.of_header(header)
         version = next(filter(None, self.around(library, platform)), "") if library else ""
         build = self.build(library, version) if version else None
         if build is None:
             return None
-        paths = {header, *_without_root(header, build.include_dirs)}
+        paths = set(_written(header, build.include_dirs))
         row = next((one for one in build.headers if one.include in paths), None)
         if row is None:
             return None
@@ -136,8 +170,9 @@ def _exports(build: BuildSurface, name: str) -> bool | None:
     return None if any(part == "targets" for part, _ in build.unknown) or not build.cmake_names else False
 
 
-def _without_root(header: str, roots: tuple[str, ...]) -> Iterator[str]:
-    """A header as it lies below the folders that flags name, which it is written with."""
+def _written(header: str, roots: tuple[str, ...]) -> Iterator[str]:
+    """A header as it is written, and as it lies below the folders that flags name."""
+    yield header
     parts = header.split("/")
     for place in range(1, len(parts)):
         folder = "/".join(parts[:place])
