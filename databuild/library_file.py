@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
+import zstandard
 
 from ..edges.files import read_chunks, writing
 from ..impact.facts.surface import Entity, HeaderSurface
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
-  names BLOB NOT NULL, versions TEXT NOT NULL, PRIMARY KEY(name, ros)) WITHOUT ROWID;
+  names BLOB NOT NULL, headers BLOB NOT NULL, versions TEXT NOT NULL, PRIMARY KEY(name, ros)) WITHOUT ROWID;
 CREATE TABLE debian(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE target(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 """
 """package: as in surfaces.sqlite, of no ROS generation (0), with what headers declare apart, in names, in the form of
-data; versions: `SUITE=VERSION ...`, oldest first. debian: the
+data; headers: the paths of all versions, a line each, packed; versions: `SUITE=VERSION ...`, oldest first. debian: the
 development packages that were read. target: CMake targets with a namespace, and the library whose configurations
 export them in some version, where that is one."""
 
@@ -65,7 +66,7 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
                 row = _packed(name, each, texts)
                 versions += len(each)
                 headers += sum(len(facts.headers) for _, facts in each)
-                db.execute("INSERT INTO package VALUES(?, 0, ?, ?, ?, ?, ?)", (name, *row))
+                db.execute("INSERT INTO package VALUES(?, 0, ?, ?, ?, ?, ?, ?)", (name, *row))
             db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_targets(by_library).items()))
             db.executemany("INSERT INTO debian VALUES(?, ?)", sorted(debian.items()))
             db.commit()
@@ -96,9 +97,9 @@ def fold(name: str) -> str:
 
 def _packed(
     name: str, each: Sequence[tuple[str, LibraryFacts]], texts: Texts
-) -> tuple[bytes, bytes, bytes, bytes, str]:
+) -> tuple[bytes, bytes, bytes, bytes, bytes, str]:
     """What is stored of a library: what its versions offer, nothing of what changed, what their headers include,
-    what these declare, and the versions by suite."""
+    what these declare, the headers of all versions, and the versions by suite."""
     packer, names, including = Packer(), Packer(), Including()
     of_suite = {suite: upstream(facts.version) for suite, facts in each}
     known: set[str] = set()
@@ -114,7 +115,9 @@ def _packed(
         including.add(version, headers)
     line = Line(tuple(sorted(known, key=parts)), {})
     told = " ".join("=".join(one) for one in of_suite.items())
-    return packer.packed(), pack(line), including.packed(), names.packed(), told
+    paths = "\n".join(sorted({header.path for _, facts in each for header in facts.headers}))
+    listed = zstandard.ZstdCompressor(level=19).compress(paths.encode())
+    return packer.packed(), pack(line), including.packed(), names.packed(), listed, told
 
 
 def _headers(facts: LibraryFacts, texts: Texts) -> Iterator[tuple[str, HeaderSurface]]:

@@ -813,7 +813,7 @@ class TargetView:
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
             return found
-        found = self._having(path, self._bringing(found))
+        found = self._having(path, self._bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
             if self.target.version(head) is not None or not found or head in self.workspace.packages:
@@ -823,19 +823,20 @@ class TargetView:
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
         return _without_broad(found)
 
-    def _bringing(self, found: list[Provider]) -> list[Provider]:
+    def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the keys that bring the library of a header on other platforms than this one."""
         libraries = system_libraries()
-        own = next((one for p in found if p.kind == "system" and (one := libraries.of_package(p.package))), "")
-        if not own:
+        own = libraries.of_header(path)
+        if not own or not all(libraries.around(own, self.target.platform)):
             return found
         packages = libraries.packages(own)
-        brought = self.apt.brought_by
-        return [
-            p
-            for p in found
-            if p.kind != "system" or p.package in packages or not packages.isdisjoint(brought(p.package))
-        ]
+        kept = [p for p in found if p.kind != "system" or not packages.isdisjoint(self._installed_by(p))]
+        return kept if any(p.kind == "system" for p in kept) else found
+
+    def _installed_by(self, provider: Provider) -> frozenset[str]:
+        """The Debian packages that a provider installs here, and those that come along."""
+        names = {provider.package, *self.debian(provider.name)}
+        return names.union(*map(self.apt.brought_by, names))
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""

@@ -140,13 +140,14 @@ class Availabilities:
     def _of_library(self, symbol: Symbol) -> Availability | None:
         """What Debian's releases of a system library tell of a target that some of them export."""
         target = self.target
-        found = system_libraries().target(symbol.name, target.platform) if symbol.kind == "target" else None
+        if symbol.kind != "target" or not target.platform:
+            return None
+        found = system_libraries().target(symbol.name, target.platform, target.library)
         if found is None or found.here is None:
             return None
         state: State = "present" if found.here else "removed" if found.lost else "not yet"
         version = target.library(found.library) or found.version
-        since = found.first if state == "not yet" else ""
-        return Availability(symbol, state, found.library, version, since, library=True)
+        return Availability(symbol, state, found.library, version, library=True)
 
     def on_horizon(self, symbol: Symbol) -> Availability:
         """The same, and `upcoming` for what is there and is removed on the nearest horizon."""

@@ -97,8 +97,13 @@ def test_ubuntu_lies_between_two_releases_of_debian(platform, expected):
     ],
 )
 def test_a_target_is_there_where_the_releases_around_a_platform_agree(target, platform, here, lost):
-    found = system_libraries().target(target, platform)
+    found = system_libraries().target(target, platform, lambda library: None)
     assert found is not None and (found.here, found.lost) == (here, lost)
+
+
+def test_a_version_that_was_read_tells_more_than_those_around_it():
+    found = system_libraries().target("yaml-cpp::yaml-cpp", "ubuntu noble", {"yaml-cpp": "0.8.0"}.get)
+    assert found is not None and found.here
 
 
 @pytest.mark.parametrize(

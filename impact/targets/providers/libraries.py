@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING, NamedTuple
+
+import zstandard
 
 from ....edges.memory import cached_method
 from ..platform import neighbours
@@ -21,6 +23,8 @@ from .providers import default_providers
 if TYPE_CHECKING:
     from ..surface.surface import BuildSurface
 
+_NEAREST = 4
+"""How many of those that bring a header, the nearest first, are asked whether it is theirs."""
 _NAMED = ("cmake_names", "targets", "unknown")
 
 
@@ -44,13 +48,11 @@ class Including(NamedTuple):
 
 class Presence(NamedTuple):
     """How a platform stands to a part of a library. here: None where its releases do not tell. version: the oldest that
-    the platform may have; first: the oldest that was read and has the part. lost: a later one was read that lacks it.
-    """
+    the platform may have. lost: some version lacks it, and the one before that had it."""
 
     library: str
     here: bool | None
     version: str
-    first: str
     lost: bool
 
 
@@ -97,9 +99,19 @@ class SystemLibraries:
 
     @cached_method
     def of_header(self, header: str) -> str:
-        """The library that a header is of; empty for none that was read."""
-        provider = next(iter(default_providers().header(header)), None)
-        return self.of_package(provider.package) if provider is not None and provider.kind == "system" else ""
+        """The library that has a header in some version; empty for none that was read."""
+        providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
+        nearest = dict.fromkeys(library for p in islice(providers, _NEAREST) if (library := self.of_package(p.package)))
+        return next((library for library in nearest if self._has(library, header)), "")
+
+    def _has(self, library: str, header: str) -> bool:
+        known = self._headers(library)
+        return any(path in known for path in _written(header, self._roots(library)))
+
+    @lru_cache(maxsize=256)  # noqa: B019
+    def _headers(self, library: str) -> frozenset[str]:
+        (data,) = self._file.columns("SELECT headers FROM package WHERE name = ?", library)
+        return frozenset(zstandard.ZstdDecompressor().decompress(data).decode().split("\n"))
 
     def included(self, header: str, platform: str) -> Including | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
@@ -110,7 +122,7 @@ class SystemLibraries:
         found: dict[str, None] = {}
         there = False
         for version in versions if known is not None else ():
-            for path in _written(header, self._roots(library, version)):
+            for path in _written(header, self._roots(library)):
                 if (written := known.written(path, version)) is not None:
                     found.update((known.answer(one, path, version), None) for one in written)
                     there = True
@@ -118,9 +130,11 @@ class SystemLibraries:
         return Including(library, versions[0], tuple(found)) if there else None
 
     @cached_method
-    def _roots(self, library: str, version: str) -> tuple[str, ...]:
-        build = self.build(library, version, ("include_dirs",))
-        return build.include_dirs if build is not None else ()
+    def _roots(self, library: str) -> tuple[str, ...]:
+        """The folders that flags name in any version."""
+        versions = dict.fromkeys(self.versions(library).values())
+        builds = (self.build(library, version, ("include_dirs",)) for version in versions)
+        return tuple(dict.fromkeys(root for build in builds if build is not None for root in build.include_dirs))
 
     @cached_method
     def linking(self, header: str, platform: str) -> Linking | None:
@@ -146,21 +160,22 @@ class SystemLibraries:
         )
         return Linking(library, bool(libraries), libraries, names)
 
-    def target(self, name: str, platform: str) -> Presence | None:
-        """How a platform stands to a CMake target that a library exports in some version; None where none does."""
+    def target(self, name: str, platform: str, version_of: Callable[[str], str | None]) -> Presence | None:
+        """How a platform stands to a CMake target that a library exports in some version; None where none does.
+        version_of: the platform's version of a library, where that is known."""
         library = self._first("SELECT library FROM target WHERE name = ?", name)
-        return self._presence(library, platform, lambda build: _exports(build, name)) if library else None
-
-    def _presence(self, library: str, platform: str, has: Callable[[BuildSurface], bool | None]) -> Presence:
+        if not library:
+            return None
         versions = dict.fromkeys(self.versions(library).values())
-        told = {version: has(build) for version in versions if (build := self.build(library, version, _NAMED))}
-        before, after = self.around(library, platform)
+        told = {one: _exports(build, name) for one in versions if (build := self.build(library, one, _NAMED))}
+        exact = version_of(library)
+        before, after = (exact, exact) if exact in told else self.around(library, platform)
         states = {told.get(version) for version in (before, after) if version}
         # What the oldest release lacks and a later one has came with that: it was not there before either.
         complete = (before and after) or (after and told.get(after) is False)
         here = states.pop() if complete and len(states) == 1 else None
         lost = any(told[one] and told[two] is False for one, two in pairwise(told))
-        return Presence(library, here, before or after, next((one for one in told if told[one]), ""), lost)
+        return Presence(library, here, before or after, lost)
 
 
 def _exports(build: BuildSurface, name: str) -> bool | None:

@@ -390,7 +390,7 @@ class Surfaces:
         plain = zstandard.ZstdDecompressor().decompress(data)
         return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
 
-    def columns(self, query: str, value: str) -> list[str]:
+    def columns(self, query: str, value: str) -> list[Any]:
         """The first column of a query's rows."""
         return [row[0] for row in self._rows(query, value)]
 
