@@ -32,7 +32,7 @@ from ..impact.targets.surface.store import shipped
 from ..impact.targets.version import at_least, parts
 from . import library_file, library_tags
 from .includes import platform_versions
-from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, upstream
+from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, count_uses, upstream
 
 
 class Library(NamedTuple):
@@ -403,17 +403,17 @@ def packaged(library: Library, suites: Suites, texts: Texts) -> list[Version]:
 _OWN = 0.95
 _FEWEST = 8
 _KEPT = 0.6
+_USED = 30
 """Shares of the names with one beginning that one library has for these names to be its own, and of headers that the
-next version has where what it lacks is told; and how many such names there have to be."""
+next version has where what it lacks is told; how many such names there have to be; and how many manifests name the
+library, since each row costs all checks a little."""
 
 
 def start_of(name: str) -> str:
-    """How the names begin that are of one family: `cv::` of `cv::Mat`, `SDL_` of `SDL_Init`; empty for bare words."""
+    """The outermost namespace or class of a name: `cv::` of `cv::Mat`; empty for bare names, which macros often make of
+    several words."""
     head, colons, _ = name.partition("::")
-    if colons:
-        return f"{head}::"
-    told = re.match(r"[A-Za-z]\w{1,}?_(?=\w)", name)
-    return told[0] if told is not None else ""
+    return f"{head}::" if colons else ""
 
 
 def other_libraries(suites: Suites, texts: Texts) -> list[Library]:
@@ -441,9 +441,9 @@ def other_libraries(suites: Suites, texts: Texts) -> list[Library]:
             name,
             re.compile(rf"(?:{'|'.join(map(re.escape, sorted(packages[name])))})\Z"),
             re.compile(r"(?P<path>.+/.+)\Z"),
-            re.compile(rf"(?:{'|'.join(sorted(starts))})\w.*\Z"),
+            re.compile(rf"(?:{'|'.join(sorted(own[name])) or '(?!)'})\w.*\Z"),
         )
-        for name, starts in sorted(own.items())
+        for name in sorted(packages)
         if not any(pattern.match(package) for pattern in by_hand for package in packages[name])
     ]
 
@@ -502,7 +502,10 @@ def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> N
         tagged, steps = _tagged(clones, library, versions) if clones is not None else ([], 0)
         # Macros that only old versions have may declare more than is read, so that no numbers of arguments are told.
         early += [group for key, group in groups(library, tagged, reviewed, steps) if key == "changes" and steps]
+    uses_of = count_uses()
     for library in other_libraries(suites, texts):
+        if sum(count for name, count in uses_of.items() if library.packages.match(name)) < _USED:
+            continue
         versions = packaged(library, suites, texts)
         if not _shrunk(versions):
             told = groups(library, versions, reviewed, elsewhere=everywhere.has)
@@ -524,7 +527,7 @@ def main(arguments: list[str] | None = None) -> None:
     run = Run(asked.work, lambda text: print(text, flush=True))
     for item in asked.suite:
         name, _, configuration = item.partition("=")
-        run.read_suite(name, Path(configuration).absolute())
+        run.read_suite(name, Path(configuration).absolute(), [one.packages for one in LIBRARIES])
     names = sorted(run.suites(), key=lambda name: _ORDER.get(name, len(_ORDER)))
     suites = {name: {facts.library: facts for facts in run.facts(name)} for name in names}
     if not suites:

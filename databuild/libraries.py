@@ -123,9 +123,9 @@ def upstream(version: str) -> str:
 # -- which packages ----------------------------------------------------------------------------------------------------
 
 
-def list_packages(lists: Path, named: Iterable[str]) -> list[Packaged]:
+def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Pattern[str]] = ()) -> list[Packaged]:
     """The development packages of a suite that these names bring: those among them, and what they depend on of the same
-    source. lists: the folder of apt's lists."""
+    source. lists: the folder of apt's lists. besides: patterns of further names."""
     fields: dict[str, dict[str, str]] = {}
     name = ""
     for index in sorted(lists.glob("*_Packages*")):
@@ -141,7 +141,7 @@ def list_packages(lists: Path, named: Iterable[str]) -> list[Packaged]:
     sources = frozenset(source.values())
     library = {name: library_of_source(one, sources) for name, one in source.items()}
     found: dict[str, Packaged] = {}
-    for start in named:
+    for start in {*named, *(name for name in fields if any(one.match(name) for one in besides))}:
         ring, seen = [start] if start in fields else [], {start}
         while ring:
             one = ring.pop()
@@ -169,10 +169,14 @@ def _is_development(name: str, told: Mapping[str, str]) -> bool:
     return not (of_ros(source) or is_of_compiler(name) or _APART.fullmatch(name))
 
 
-def named_packages() -> frozenset[str]:
-    """The Debian packages that rosdep keys of released packages install, or ever did."""
+def count_uses() -> Counter[str]:
+    """The Debian packages that rosdep keys of released packages install, or ever did, and how often manifests name
+    them."""
     keys = read_keys(default())
-    return frozenset(name for key in keys.uses for name in keys.debian.get(key, ()))
+    found: Counter[str] = Counter()
+    for key, count in keys.uses.items():
+        found.update(dict.fromkeys(keys.debian.get(key, ()), count))
+    return found
 
 
 # -- reading -----------------------------------------------------------------------------------------------------------
@@ -364,11 +368,11 @@ class Run:
         (work / "read").mkdir(parents=True, exist_ok=True)
         self.texts = Texts(work / "texts.sqlite")
 
-    def read_suite(self, suite: str, configuration: Path) -> None:
-        """Reads all libraries of a suite."""
+    def read_suite(self, suite: str, configuration: Path, besides: Sequence[re.Pattern[str]] = ()) -> None:
+        """Reads all libraries of a suite. besides: packages that count though no key names them."""
         lists = Path(_ask_apt(configuration, "Dir::State::lists/d"))
         by_library: dict[str, list[Packaged]] = defaultdict(list)
-        for package in list_packages(lists, named_packages()):
+        for package in list_packages(lists, count_uses(), besides):
             by_library[package.library].append(package)
         for stale in (self.work / "read" / suite).glob("*.msgpack"):
             if stale.stem not in by_library:

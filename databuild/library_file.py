@@ -17,6 +17,8 @@ import zstandard
 
 from ..edges.files import read_chunks, writing
 from ..impact.facts.surface import Entity, HeaderSurface
+from ..impact.targets.providers.libraries import NEAREST
+from ..impact.targets.providers.providers import default_providers
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.store import Stored
 from ..impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
@@ -32,11 +34,13 @@ CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NO
   names BLOB NOT NULL, headers BLOB NOT NULL, versions TEXT NOT NULL, PRIMARY KEY(name, ros)) WITHOUT ROWID;
 CREATE TABLE debian(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE target(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE header(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 """
 """package: as in surfaces.sqlite, of no ROS generation (0), with what headers declare apart, in names, in the form of
 data; headers: the paths of all versions, a line each, packed; versions: `SUITE=VERSION ...`, oldest first. debian: the
 development packages that were read. target: CMake targets with a namespace, and the library whose configurations
-export them in some version, where that is one."""
+export them in some version, where that is one. header: headers
+whose library the table of providers does not lead to."""
 
 
 class Counts(NamedTuple):
@@ -68,6 +72,7 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
                 headers += sum(len(facts.headers) for _, facts in each)
                 db.execute("INSERT INTO package VALUES(?, 0, ?, ?, ?, ?, ?, ?)", (name, *row))
             db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_targets(by_library).items()))
+            db.executemany("INSERT INTO header VALUES(?, ?)", sorted(_strays(by_library, debian).items()))
             db.executemany("INSERT INTO debian VALUES(?, ?)", sorted(debian.items()))
             db.commit()
             db.execute("VACUUM")
@@ -88,6 +93,22 @@ def _targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> di
                 if colons and fold(space) in spaces:
                     found[target.name].add(library)
     return {name: libraries.pop() for name, libraries in found.items() if len(libraries) == 1}
+
+
+def _strays(
+    by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]], debian: Mapping[str, str]
+) -> dict[str, str]:
+    """Headers that one library has, and of which those that bring it name none of its packages."""
+    owners: dict[str, set[str]] = defaultdict(set)
+    for library, each in by_library.items():
+        for path in {header.path for _, facts in each for header in facts.headers}:
+            owners[path].add(library)
+    found = {}
+    for path, libraries in owners.items():
+        packages = [p.package for p in default_providers().header(path) if p.kind == "system" and p.package]
+        if packages and len(libraries) == 1 and libraries.isdisjoint(map(debian.get, packages[:NEAREST])):
+            found[path] = next(iter(libraries))
+    return found
 
 
 def fold(name: str) -> str:

@@ -829,14 +829,13 @@ class TargetView:
         own = libraries.of_header(path)
         if not own or not all(libraries.around(own, self.target.platform)):
             return found
-        packages = libraries.packages(own)
-        kept = [p for p in found if p.kind != "system" or not packages.isdisjoint(self._installed_by(p))]
+        bringing = self.apt.bringing(libraries.packages(own))
+        kept = [
+            p
+            for p in found
+            if p.kind != "system" or p.package in bringing or not bringing.isdisjoint(self.debian(p.name))
+        ]
         return kept if any(p.kind == "system" for p in kept) else found
-
-    def _installed_by(self, provider: Provider) -> frozenset[str]:
-        """The Debian packages that a provider installs here, and those that come along."""
-        names = {provider.package, *self.debian(provider.name)}
-        return names.union(*map(self.apt.brought_by, names))
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""

@@ -47,6 +47,23 @@ class Apt:
         """A package and those that are installed along with it, as far as rosdep keys install them."""
         return frozenset(self._brought_by(package))
 
+    @cached_method
+    def bringing(self, packages: frozenset[str]) -> frozenset[str]:
+        """These packages and all that bring one of them along."""
+        mask = self._mask | (INFERRED if self._inferred else 0)
+        back: dict[int, list[int]] = {}
+        for place, others in self._graph.brings.items():
+            for other, bits in others:
+                if bits & mask:
+                    back.setdefault(other, []).append(place)
+        waiting = [place for name in packages if (place := self._place.get(name)) is not None]
+        found = set(waiting)
+        while waiting:
+            fresh = [place for place in back.get(waiting.pop(), ()) if place not in found]
+            found.update(fresh)
+            waiting += fresh
+        return packages.union(self._graph.packages[place] for place in found)
+
     def _brought_by(self, package: str) -> Iterator[str]:
         yield package
         python = package.partition("-")[0]

@@ -23,7 +23,7 @@ from .providers import default_providers
 if TYPE_CHECKING:
     from ..surface.surface import BuildSurface
 
-_NEAREST = 4
+NEAREST = 4
 """How many of those that bring a header, the nearest first, are asked whether it is theirs."""
 _NAMED = ("cmake_names", "targets", "unknown")
 
@@ -100,8 +100,10 @@ class SystemLibraries:
     @cached_method
     def of_header(self, header: str) -> str:
         """The library that has a header in some version; empty for none that was read."""
+        if stray := self._first("SELECT library FROM header WHERE name = ?", header):
+            return stray
         providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
-        nearest = dict.fromkeys(library for p in islice(providers, _NEAREST) if (library := self.of_package(p.package)))
+        nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
         return next((library for library in nearest if self._has(library, header)), "")
 
     def _has(self, library: str, header: str) -> bool:
