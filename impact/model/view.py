@@ -24,6 +24,7 @@ from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import HeadersOfMachine, machine, machine_of
+from ..targets.providers.libraries import system_libraries
 from ..targets.providers.library import default_standard, include_roots, standard_year
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
@@ -827,7 +828,7 @@ class TargetView:
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
             return found
-        found = self._having(path, found)
+        found = self._having(path, self._bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
             if self.target.version(head) is not None or not found or head in self.workspace.packages:
@@ -836,6 +837,20 @@ class TargetView:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
         return _without_broad(found)
+
+    def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
+        """Without the keys that bring the library of a header on other platforms than this one."""
+        libraries = system_libraries()
+        own = libraries.of_header(path)
+        if not own or not all(libraries.around(own, self.target.platform)):
+            return found
+        bringing = self.apt.bringing(libraries.packages(own))
+        kept = [
+            p
+            for p in found
+            if p.kind != "system" or p.package in bringing or not bringing.isdisjoint(self.debian(p.name))
+        ]
+        return kept if any(p.kind == "system" for p in kept) else found
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""

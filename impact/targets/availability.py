@@ -18,6 +18,7 @@ from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_
 from .distro.known import known_distros
 from .evidence import evidence_of, of_offered
 from .evidence_record import Evidence
+from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER
 from .surface.fields import before, default_fields, there
@@ -134,7 +135,19 @@ class Availabilities:
                 return found
             if found.state != "unknown":
                 missing = missing or found
-        return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
+        return missing or self._reviewed(symbol) or self._of_library(symbol) or Availability(symbol, "unknown")
+
+    def _of_library(self, symbol: Symbol) -> Availability | None:
+        """What Debian's releases of a system library tell of a target that some of them export."""
+        target = self.target
+        if symbol.kind != "target" or not target.platform:
+            return None
+        found = system_libraries().target(symbol.name, target.platform, target.library)
+        if found is None or found.here is None:
+            return None
+        state: State = "present" if found.here else "removed" if found.lost else "not yet"
+        version = target.library(found.library) or found.version
+        return Availability(symbol, state, found.library, version, library=True)
 
     def on_horizon(self, symbol: Symbol) -> Availability:
         """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for

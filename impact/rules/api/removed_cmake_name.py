@@ -27,6 +27,7 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.cmake.build import At
+from ...model.cmake.names import MODULES
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
@@ -86,5 +87,25 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
     for (kind, name), (at, certain, conditions) in places.items():
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
         lost = find_missing(view, kind, name, packages)
-        if lost is not None and view.breaks_under(lost, conditions):
+        if lost is None or not view.breaks_under(lost, conditions):
+            continue
+        if not (lost.library and _may_be_made(view, package, name)):
             yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL,))
+
+
+def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
+    """Whether a target of a system library may come from something else than its own configuration: a find module, or
+    what a package that is found brings."""
+    space = _fold(name.partition("::")[0])
+    found = [one.name for one in package.build.found if one.how == "find_package"]
+    named = [one for one in found if _fold(one) == space]
+    return (
+        not named
+        or bool(package.build.unresolved)
+        or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
+        or any(space in _fold(one) for one in view.spread(found) if view.is_package(one))
+    )
+
+
+def _fold(name: str) -> str:
+    return name.lower().replace("-", "").replace("_", "")
