@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import msgspec
 
-from ..impact.facts.surface import CLASSES, FUNCTIONS, Entity
-from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, Overload
+from ..impact.facts.surface import CLASSES, FUNCTIONS
+from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, overload_of
 from ..impact.targets.surface.compare import RepositorySurfaces, VersionChange, compare
 from ..impact.targets.surface.python import UNKNOWN
 from .surface_file import brief, pack
@@ -112,7 +112,7 @@ def _form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form
         if not entities:
             return None
         called = [one for one in entities if one.kind in _CALLED and one.parameters is not None]
-        overloads = dict.fromkeys(map(_overload, called))
+        overloads = dict.fromkeys(map(overload_of, called))
         messages = [one.deprecated for one in entities]
         return Form(tuple(overloads), None if None in messages else brief(messages[0] or ""))
     if side == "python":
@@ -122,14 +122,6 @@ def _form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form
         deprecated = entry.bound.deprecated if entry.bound is not None else ""
         return Form((), brief(deprecated) if deprecated else None)
     return None
-
-
-def _overload(one: Entity) -> Overload:
-    parameters = one.parameters or ()
-    required = sum(p.default is None and not p.pack for p in parameters)
-    most = -1 if "variadic" in one.traits or any(p.pack for p in parameters) else len(parameters)
-    kept = tuple(t for t in one.traits if t in ("const", "virtual", "pure", "override", "final", "static", "deleted"))
-    return Overload(required, most, tuple(p.type for p in parameters), kept)
 
 
 def _bases(package: str, state: RepositorySurfaces) -> dict[str, tuple[str, ...]]:

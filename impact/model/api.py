@@ -17,8 +17,8 @@ from ..targets.surface.offers_cpp import (
     is_untold,
     lost_forms,
     refused_by,
-    virtual_forms,
 )
+from ..targets.surface.overrides import virtual_forms
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
@@ -90,15 +90,20 @@ class ChangingName:
     @cached_property
     def matters(self) -> bool:
         """Whether a use of it may be wrong in one of the versions."""
-        return self.there or any(_others(one.standing) or _has_other_default(one.standing) for one in self.forms)
+        return (
+            self.there
+            or any(_others(one.standing) or _has_other_default(one.standing) for one in self.forms)
+            or self.virtual
+        )
 
     @cached_property
     def virtual(self) -> bool:
         """Whether a method that overrides it may override nothing in one of the versions."""
         return self.what == "method" and any(
-            not _signatures(form) <= _signatures(one.standing.here)
-            for one in self.forms
-            for form in _others(one.standing)
+            any("result" in told.aspects for told in event.told)
+            or any(not _signatures(form) <= _signatures(standing.here) for form in (event.had, event.has))
+            for standing, *_ in self.forms
+            for event in (*standing.past, *standing.future)
         )
 
     @cached_property

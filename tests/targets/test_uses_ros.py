@@ -358,42 +358,6 @@ EXAMPLES = {
         'a = image_transport::create_camera_subscription(node, "a", f, "raw", rclcpp::QoS(1));',
         'a = image_transport::create_camera_subscription(node, "a", f, "raw");',
     ),
-    "return_type read()": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type read() override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type read(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
-    ),
-    "return_type write()": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type write() override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type write(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
-    ),
-    "return_type read(time, period)": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type read(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type read() override; };",
-    ),
-    "return_type write(time, period)": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type write(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type write() override; };",
-    ),
-    "return_type configure(HardwareInfo)": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type configure(const hardware_interface::HardwareInfo & info) override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareInfo & info) override; };",
-    ),
-    "return_type start()": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type start() override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State & state) override; };",
-    ),
-    "return_type stop()": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type stop() override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State & state) override; };",
-    ),
-    "CallbackReturn on_init(HardwareInfo)": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareInfo & info) override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type configure(const hardware_interface::HardwareInfo & info) override; };",
-    ),
-    "CallbackReturn on_init(HardwareComponentInterfaceParams)": (
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareComponentInterfaceParams & params) override; };",
-        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareInfo & info) override; };",
-    ),
     "get_optional()": (
         "double a = command_interfaces_[0].get_optional().value();",
         "double a = command_interfaces_[0].get_value();",
@@ -413,14 +377,6 @@ EXAMPLES = {
     "controller->init(name)": (
         'controller_interface::A a; controller_->init("a");',
         'controller_->init("a", "", 0, "", controller_->define_custom_node_options());',
-    ),
-    "update_reference_from_subscribers()": (
-        "controller_interface::return_type update_reference_from_subscribers() override;",
-        "controller_interface::return_type update_reference_from_subscribers(const rclcpp::Time & time, const rclcpp::Duration & period) override;",
-    ),
-    "update_reference_from_subscribers(time, period)": (
-        "controller_interface::return_type update_reference_from_subscribers(const rclcpp::Time & time, const rclcpp::Duration & period) override;",
-        "controller_interface::return_type update_reference_from_subscribers() override;",
     ),
     "get_state()": (
         "if (controller_interface::a && get_state().id() == 3) {}",
@@ -445,54 +401,6 @@ EXAMPLES = {
     "RealtimePublisher::msg_": (
         "realtime_tools::RealtimePublisher<T> * a; f(realtime_publisher_->msg_.data);",
         "realtime_tools::RealtimePublisher<T> * a; realtime_publisher_->try_publish(message_);",
-    ),
-    "computeVelocityCommands(pose, velocity)": (
-        "class A : public nav2_core::Controller { geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped & pose, const geometry_msgs::msg::Twist & velocity) override; };",
-        "class A : public nav2_core::Controller { geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped & pose, const geometry_msgs::msg::Twist & velocity, nav2_core::GoalChecker * goal_checker) override; };",
-    ),
-    "computeVelocityCommands(pose, velocity, goal_checker)": (
-        "class A : public nav2_core::Controller { geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped & pose, const geometry_msgs::msg::Twist & velocity, nav2_core::GoalChecker * goal_checker) override; };",
-        "class A : public nav2_core::Controller { geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped & pose, const geometry_msgs::msg::Twist & velocity) override; };",
-    ),
-    "createPlan(start, goal)": (
-        "class A : public nav2_core::GlobalPlanner { nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped & start, const geometry_msgs::msg::PoseStamped & goal) override; };",
-        "class A : public nav2_core::GlobalPlanner { nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped & start, const geometry_msgs::msg::PoseStamped & goal, std::function<bool()> cancel_checker) override; };",
-    ),
-    "createPlan(start, goal, cancel_checker)": (
-        "class A : public nav2_core::GlobalPlanner { nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped & start, const geometry_msgs::msg::PoseStamped & goal, std::function<bool()> cancel_checker) override; };",
-        "class A : public nav2_core::GlobalPlanner { nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped & start, const geometry_msgs::msg::PoseStamped & goal) override; };",
-    ),
-    "configure(LifecycleNode::SharedPtr, ...)": (
-        "class A : public nav2_core::Controller { void configure(const rclcpp_lifecycle::LifecycleNode::SharedPtr & parent, std::string name); };",
-        "class A : public nav2_core::Controller { void configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, std::string name); };",
-    ),
-    "configure(rclcpp_lifecycle::LifecycleNode::WeakPtr, ...)": (
-        "class A : public nav2_core::Controller { void configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, std::string name); };",
-        "class A : public nav2_core::Controller { void configure(const nav2::LifecycleNode::WeakPtr & parent, std::string name); };",
-    ),
-    "GoalChecker::initialize(parent, name)": (
-        "class A : public nav2_core::GoalChecker { void initialize(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, const std::string & plugin_name) override; };",
-        "class A : public nav2_core::GoalChecker { void initialize(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, const std::string & plugin_name, const std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap_ros) override; };",
-    ),
-    "GoalChecker::initialize(parent, name, costmap)": (
-        "class A : public nav2_core::GoalChecker { void initialize(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, const std::string & plugin_name, const std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap_ros) override; };",
-        "class A : public nav2_core::GoalChecker { void initialize(const rclcpp_lifecycle::LifecycleNode::WeakPtr & parent, const std::string & plugin_name) override; };",
-    ),
-    "isGoalReached(pose, goal, velocity)": (
-        "class A : public nav2_core::GoalChecker { bool isGoalReached(const geometry_msgs::msg::Pose & pose, const geometry_msgs::msg::Pose & goal, const geometry_msgs::msg::Twist & velocity) override; };",
-        "class A : public nav2_core::GoalChecker { bool isGoalReached(const geometry_msgs::msg::Pose & pose, const geometry_msgs::msg::Pose & goal, const geometry_msgs::msg::Twist & velocity, const nav_msgs::msg::Path & plan) override; };",
-    ),
-    "isGoalReached(pose, goal, velocity, plan)": (
-        "class A : public nav2_core::GoalChecker { bool isGoalReached(const geometry_msgs::msg::Pose & pose, const geometry_msgs::msg::Pose & goal, const geometry_msgs::msg::Twist & velocity, const nav_msgs::msg::Path & plan) override; };",
-        "class A : public nav2_core::GoalChecker { bool isGoalReached(const geometry_msgs::msg::Pose & pose, const geometry_msgs::msg::Pose & goal, const geometry_msgs::msg::Twist & velocity) override; };",
-    ),
-    "Status onRun()": (
-        "class A : public TimedBehavior<Action> { nav2_behaviors::Status onRun(const std::shared_ptr<const Goal> command) override; };",
-        "class A : public TimedBehavior<Action> { nav2_behaviors::ResultStatus onRun(const std::shared_ptr<const Goal> command) override; };",
-    ),
-    "ResultStatus onRun()": (
-        "class A : public TimedBehavior<Action> { nav2_behaviors::ResultStatus onRun(const std::shared_ptr<const Goal> command) override; };",
-        "class A : public TimedBehavior<Action> { nav2_behaviors::Status onRun(const std::shared_ptr<const Goal> command) override; };",
     ),
     "nav2_util::LifecycleNode(name, namespace, use_rclcpp_node)": (
         'A() : nav2_util::LifecycleNode("a", "", true) {}',

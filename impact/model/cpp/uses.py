@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import template_arguments
+from ...targets.surface.overrides import describe_override
 from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver
@@ -290,8 +291,9 @@ class ApiUses:
                         marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
                         if "final" in method.traits and "override" not in marks:
                             marks = (*marks, "override")
+                        given = describe_override(types, marks, parameter_type(method.type), class_.name)
                         yield FoundName(names[member[0]].package, member[0], method.offset, "override", len(types),
-                                    (*types, *marks), False, True, member[1])  # fmt: skip
+                                    given, False, True, member[1])  # fmt: skip
 
     def unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
         """Methods that a base class in another package makes others implement in some version, and that an exported

@@ -13,6 +13,7 @@ from ...targets.changes import function_of
 from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
+from ...targets.surface.overrides import class_of, says_override
 from ...targets.symbol import Availability
 from ..rule import Doubt, doubts_of_place
 
@@ -88,6 +89,8 @@ def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     }
     near = view.closure(package)
     own = {name for one in view.workspace for name in one.digest.defined}
+    unserved: list[tuple[CppApiUse, Availability]] = []
+    overridden: set[tuple[str, str]] = set()
     for use in package.digest.cpp_api:
         if use.package not in near or use.name in own or not view.active(use.conditions):
             continue
@@ -98,15 +101,22 @@ def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
             continue
         asked = use.package, use.name, use.how, use.arguments, use.given, use.templated
         ask: Ask = lambda offers, _, asked=asked: availability_of_use(offers, *asked)  # noqa: E731
-        for found in _answers(view, ask, (use.package,), use.conditions):
-            yield UnservedUse(use.at, use.name, found, _doubts_of_cpp(view, use, found), use.arguments, sure=use.sure)
+        found = list(_answers(view, ask, (use.package,), use.conditions))
+        unserved += [(use, one) for one in found]
+        if use.how == "override" and (not found or says_override(use.given, use.arguments)):
+            overridden.add((class_of(use.given, use.arguments), use.name))
+    for use, found in unserved:
+        beside = found.form == "override" and not says_override(use.given, use.arguments)
+        if beside and (class_of(use.given, use.arguments), use.name) in overridden:
+            continue  # another of that name overrides, or is to
+        yield UnservedUse(use.at, use.name, found, _doubts_of_cpp(view, use, found), use.arguments, sure=use.sure)
 
 
 def _doubts_of_cpp(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
     doubts = doubts_of_place(view, use.role, use.conditions)
     if not use.sure or any(package in view.workspace.packages for package in use.through):
         doubts = (*doubts, Doubt.INCOMPLETE)
-    if found.form == "override" and "override" not in use.given:
+    if found.form == "override" and not says_override(use.given, use.arguments):
         doubts = (*doubts, Doubt.DISTURBS)  # it compiles, and nobody calls it
     return doubts
 

@@ -8,6 +8,7 @@ little. The line of versions is one for each ROS generation, since nothing is go
 import msgspec
 import zstandard
 
+from ...facts.surface import Entity
 from ..version import newest_up_to
 
 PARAMETER = "parameter of a node"
@@ -26,6 +27,15 @@ class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def accepts(self, arguments: int) -> bool:
         """Whether it takes so many arguments."""
         return self.fewest <= arguments and (self.most < 0 or arguments <= self.most)
+
+
+def overload_of(one: Entity) -> Overload:
+    """The way to call a function or macro that an entity is."""
+    parameters = one.parameters or ()
+    required = sum(p.default is None and not p.pack for p in parameters)
+    most = -1 if "variadic" in one.traits or any(p.pack for p in parameters) else len(parameters)
+    kept = tuple(t for t in one.traits if t in ("const", "virtual", "pure", "override", "final", "static", "deleted"))
+    return Overload(required, most, tuple(p.type for p in parameters), kept)
 
 
 class Form(msgspec.Struct, frozen=True, array_like=True, gc=False):

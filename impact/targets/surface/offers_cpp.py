@@ -4,7 +4,7 @@ longer overriding, on its way out. Asked of the names that only some stored vers
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from ..symbol import Availability, State, Symbol
 from ..version import at_least
 from .changes import Form, Overload
 from .offers import Offered, Offers, PackageOffer, declarations
+from .overrides import Override, virtual_forms
 
 if TYPE_CHECKING:
     from .store import SurfaceHistory
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 def _found(state: State, offered: Offered, form: str = "", earlier: bool = True, sure: bool = True) -> Availability:
     """What surfaces say of a use of a name. earlier: a version before the target's took it."""
-    since = offered.first if earlier or state == "not yet" else offered.coming
+    since = offered.first if earlier or state == "not yet" or not offered.coming else offered.coming
     if state == "deprecated":
         detail = offered.here.deprecated if offered.here is not None else ""
     else:
@@ -49,6 +50,8 @@ def availability_of_use(
     offered = offer.get("c++", name) if offer is not None else None
     if offer is None or offered is None or offered.state == "moved" or _between(offer, offered):
         return None
+    if how == "override":
+        return _override(offers, offered, arguments, given)
     if offered.here is None and offered.state in ("removed", "absent"):
         return _lacking(offers, offered, how)
     if offers.there("c++", name, package):
@@ -61,10 +64,8 @@ def _of_what_is_there(
 ) -> Availability | None:
     """The same of a name that the target's version has."""
     package, name = offered.package, offered.name
-    if offered.here is None or (how not in ("override", "implement") and _is_alias(offers, package, name)):
+    if offered.here is None or (how != "implement" and _is_alias(offers, package, name)):
         return None
-    if how == "override":
-        return _override(offered, given)
     if how == "implement":
         return _unmade(offered)
     if offered.state == "deprecated":
@@ -79,12 +80,30 @@ def _inherited(
 ) -> Availability | None:
     """The same of a member that the target's version has no longer, or not yet, in the class itself but in a base of
     it: its form is that of the base's. None where the base cannot be told."""
+    holder = next(_holders(offers, offer, name), None)
+    return None if holder is None else availability_of_use(offers, *holder, how, arguments, given)
+
+
+def _holders(offers: Offers, offer: PackageOffer, name: str) -> Iterator[tuple[str, str]]:
+    """The packages and names of a member of a class in the bases of the class, as the target has them."""
     class_, _, member = name.rpartition("::")
     for base in offer.line.bases.get(class_, ()):
         for package in dict.fromkeys((offer.package, base.partition("::")[0])):
             if offers.there("c++", base, package):
-                return availability_of_use(offers, package, f"{base}::{member}", how, arguments, given)
-    return None
+                yield package, f"{base}::{member}"
+                break
+
+
+def _override(offers: Offers, offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
+    """Whether a method that a class declares overrides none of its base's any more, or not yet."""
+    if offered.here is None and (not offered.sure or _elsewhere(offers, offered)):
+        return None
+    line = [(offered.package, offered.name)]
+    for package, name in line:
+        near = offers.package(package)
+        line.extend(one for one in _holders(offers, near, name) if one not in line) if near is not None else ()
+    lost = Override(offers, given, arguments).lost(line)
+    return _found("changed", lost[0], "override", lost[1]) if lost is not None else None
 
 
 def _between(offer: PackageOffer, offered: Offered) -> bool:
@@ -104,15 +123,7 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Availability | None:
     name = offered.name
     if not offered.sure or _by_macro(offers, offered):
         return None  # headers that are made or brought while building may have it
-    if any(other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)):
-        return None
-    if how == "implement":
-        return None
-    if how == "override":
-        form = offered.before if offered.state == "removed" else None
-        virtual = form is not None and any("virtual" in one.traits for one in form.overloads)
-        return _found("changed", offered, "override") if virtual else None
-    if _is_alias(offers, offered.package, name):
+    if _elsewhere(offers, offered) or how == "implement" or _is_alias(offers, offered.package, name):
         return None
     sure = True
     if offered.state == "absent":
@@ -126,6 +137,12 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Availability | None:
     elif offered.what in ("constructor", "destructor"):
         return None
     return _found("removed" if offered.state == "removed" else "not yet", offered, sure=sure)
+
+
+def _elsewhere(offers: Offers, offered: Offered) -> bool:
+    """Whether another package of the target has a name."""
+    name, others = offered.name, offers.surfaces.elsewhere(offered.name)
+    return any(other != offered.package and offers.there("c++", name, other) for other in others)
 
 
 _POINTER = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
@@ -299,41 +316,6 @@ def _is_told(one: Entity, arguments: int) -> bool:
     )  # fmt: skip
 
 
-def _override(offered: Offered, given: tuple[str, ...]) -> Availability | None:
-    """Whether a method that a class declares overrides none of its base's any more, or not yet."""
-    const = "const" in given
-    types = tuple(one for one in given if one not in ("const", "override"))
-    here = virtual_forms(offered.here)
-    if not all(_surely_differs(one, types, const) for one in here):
-        return None
-    for form, earlier in ((offered.before, True), (offered.after, False)):
-        # A method that is not to override anything need not do so yet.
-        if any(_same(one, types, const) for one in virtual_forms(form)) and (earlier or "override" in given):
-            return _found("changed", offered, "override", earlier)
-    return None
-
-
-def _surely_differs(overload: Overload, types: tuple[str, ...], const: bool) -> bool:
-    """Whether a method with these parameters surely does not override another, however the types are spelt."""
-    if _same(overload, types, const) is False:
-        return True
-    return any(_unlike(one, other) for one, other in zip(types, overload.types, strict=True))
-
-
-_SHAPE = re.compile(r"(?:\b|::)(Const)?(Shared|Weak|Unique)Ptr\b|\b(shared|weak|unique)_ptr<")
-
-
-def _unlike(one: str, other: str) -> bool:
-    """Whether two types differ in more than what an alias can stand for: a reference against a value, or one sort of
-    smart pointer against another."""
-    if one.endswith("&") != other.endswith("&"):
-        return True
-    sorts = [
-        [(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)
-    ]
-    return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
-
-
 def _unmade(offered: Offered) -> Availability | None:
     """Whether a method that a class does not implement is pure in its base, and was not or will not be."""
     here = virtual_forms(offered.here)
@@ -349,25 +331,3 @@ def _unmade(offered: Offered) -> Availability | None:
 def lost_forms(before: Form | None, here: Form | None) -> set[Overload]:
     """The overloads of a form that may be called, and that a later one has not."""
     return set(callable_forms(before)).difference(callable_forms(here))
-
-
-def virtual_forms(form: Form | None) -> list[Overload]:
-    """The overloads of a form that may be overridden."""
-    return [one for one in form.overloads if "virtual" in one.traits] if form is not None else []
-
-
-def _same(overload: Overload, types: tuple[str, ...], const: bool) -> bool | None:
-    """Whether a method with these parameters overrides another; None where their types are spelt otherwise."""
-    if len(overload.types) != len(types) or ("const" in overload.traits) != const:
-        return False
-    mine, theirs = [_last(one) for one in types], [_last(one) for one in overload.types]
-    if mine == theirs:
-        return True
-    return None if any(a == b for a, b in zip(mine, theirs, strict=True)) or not mine else False
-
-
-def _last(type_: str) -> str:
-    """A type without its scopes and without what callers do not see."""
-    bare = re.sub(r"(?:\w+::)+(?=\w)", "", type_)
-    bare = re.sub(r"\bconst\b|\btypename\b", " ", bare) if not bare.endswith(("&", "*")) else bare
-    return "".join(bare.split())

@@ -1,0 +1,227 @@
+"""Whether a method that a class declares overrides one of its base's, as the target's version of the base's package
+declares it, where another version did or does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from ...facts.surface import Entity
+from .changes import ChangeEvent, Form, Overload, overload_of
+
+if TYPE_CHECKING:
+    from .offers import Offered, Offers
+
+_RESULT = "-> "
+
+
+def describe_override(types: tuple[str, ...], marks: tuple[str, ...], result: str, class_: str) -> tuple[str, ...]:
+    """What an override is described with: the types of its parameters, `const` and `override` where they stand, what it
+    gives back, and the class that declares it."""
+    return (*types, *marks, f"{_RESULT}{result}", class_)
+
+
+def says_override(given: tuple[str, ...], arguments: int) -> bool:
+    """Whether `override` stands at a method that is so described."""
+    return "override" in given[arguments:]
+
+
+def class_of(given: tuple[str, ...], arguments: int) -> str:
+    """The class that declares a method that is so described; empty where that is not told."""
+    return given[-1] if any(one.startswith(_RESULT) for one in given[arguments:]) else ""
+
+
+def virtual_forms(form: Form | None) -> list[Overload]:
+    """The overloads of a form that may be overridden."""
+    return [one for one in form.overloads if "virtual" in one.traits] if form is not None else []
+
+
+class Override:
+    """A method that overrides, or is to override, one of a base class."""
+
+    def __init__(self, offers: Offers, given: tuple[str, ...], arguments: int):
+        marks = given[arguments:]
+        self.offers, self.types = offers, given[:arguments]
+        self.const, self.says_so = "const" in marks, "override" in marks
+        self.parameters: tuple[str, ...] = ()
+        self.result = next((one[len(_RESULT) :] for one in marks if one.startswith(_RESULT)), "")
+
+    def lost(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, bool] | None:
+        """The change that the method does not fit to, and whether it was before the target's version; None where it
+        overrides what the target has, or where that cannot be told. line: packages and names of the method in the base
+        class and in the bases of that."""
+        self.parameters = tuple(
+            parameter.name
+            for package, name in line
+            for one in self._entities(package, name.rpartition("::")[0])
+            for parameter in one.template or ()
+        )
+        here = [one for package, name in line for one in self._virtual(package, name)]
+        fitting = {one.type for one in here if self._fits(overload_of(one))}
+        for package, name in line:
+            offer = self.offers.package(package)
+            offered = offer.get("c++", name) if offer is not None else None
+            for event, form, earlier in _forms(self.offers, offered) if offered is not None else ():
+                # A method that is not to override anything need not do so yet.
+                mine = [one for one in virtual_forms(form) if self._fits(one)] if earlier or self.says_so else []
+                if offered is None or not mine:
+                    continue
+                if fitting:
+                    if self._gives_other(offered, event, earlier, fitting):
+                        return self._changed(offered, event, earlier), earlier
+                elif all(self._surely_differs(overload_of(one), mine, form, offered) for one in here):
+                    return self._changed(offered, event, earlier), earlier
+        return None
+
+    def _entities(self, package: str, name: str, version: str = "") -> list[Entity]:
+        """What a version of a package, by default the target's, declares by a name."""
+        offer, history = self.offers.package(package), self.offers.history(package)
+        return list(history.entities(name, version or offer.stored)) if offer is not None and history else []
+
+    def _virtual(self, package: str, name: str, version: str = "") -> list[Entity]:
+        """The methods of a name that may be overridden."""
+        return [one for one in self._entities(package, name, version) if "virtual" in one.traits]
+
+    def _changed(self, offered: Offered, event: ChangeEvent, earlier: bool) -> Offered:
+        """What is offered, told by an event."""
+        if not earlier:
+            return offered
+        offer = self.offers.package(offered.package)
+        assert offer is not None
+        versions = offer.line.versions
+        return offered._replace(
+            before=event.had, last=versions[event.place - 1], first=versions[event.place], told=event.told
+        )
+
+    def _fits(self, overload: Overload) -> bool:
+        """Whether the method can be the same as another, as their types are written."""
+        if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
+            return False
+        pairs = zip(self.types, overload.types, strict=True)
+        return all(_agree(one, other, self.parameters) for one, other in pairs)
+
+    def _surely_differs(self, overload: Overload, mine: list[Overload], form: Form, owner: Offered) -> bool:
+        """Whether the method does not override another, however the types are spelt. mine: those that it overrides in
+        another version, which has the form."""
+        if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
+            return True
+        pairs = list(zip(self.types, overload.types, strict=True))
+        if not any(_last(one) == _last(other) for one, other in pairs):
+            return True
+        if any(_unlike(one, other) for one, other in pairs) or any(
+            overload.types == one.types and "virtual" in one.traits for one in form.overloads
+        ):
+            return True  # what is declared beside another has other types
+        scope = owner.name.rpartition("::")[0]
+        return any(
+            self._differ(one, other, scope, owner.package)
+            for known in mine
+            for one, other in zip(known.types, overload.types, strict=True)
+        )
+
+    def _gives_other(self, offered: Offered, event: ChangeEvent, earlier: bool, now: set[str]) -> bool:
+        """Whether the method gives back what another version's does, and the target's surely does not. now: what those
+        of the target do that it may override."""
+        offer = self.offers.package(offered.package)
+        if not self.result or offer is None or not any("result" in told.aspects for told in event.told):
+            return False
+        version = offer.line.versions[event.place - 1 if earlier else event.place]
+        then = {one.type for one in self._virtual(offered.package, offered.name, version)}
+        if len(then) != 1 or not _agree(self.result, *then, ()):
+            return False
+        scope = offered.name.rpartition("::")[0]
+        return all(
+            not _agree(self.result, one, ()) and self._differ(*then, one, scope, offered.package) for one in now
+        )
+
+    def _differ(self, one: str, other: str, scope: str, package: str) -> bool:
+        """Whether two types are surely not the same. scope: the class in which both are written."""
+        kinds = [self._kind(type_, scope, package) for type_ in (one, other)]
+        return "" not in kinds and kinds[0] != kinds[1]
+
+    def _kind(self, type_: str, scope: str, package: str) -> str:
+        """A type by a name that no other type has; empty where it may be an alias, or is a template's."""
+        bare = " ".join(re.sub(r"\b(?:const|typename)\b|&", " ", type_).split())
+        if "*" in bare or "<" in bare:
+            return ""
+        if bare in _FUNDAMENTAL or re.fullmatch(r"\w+::(?:msg|srv|action)::\w+", bare) or bare == "std::string":
+            return bare
+        class_, _, pointer = bare.rpartition("::")
+        if pointer in _POINTERS:
+            kind = self._kind(class_, scope, package)
+            return f"{kind}::{pointer}" if kind else ""
+        while True:
+            full = f"{scope}::{bare}" if scope else bare
+            # What a header of the package names is declared by itself or by what it hands on.
+            owners = [full.partition("::")[0], package] if scope else self._handed_on(package, bare.partition("::")[0])
+            for owner in owners:
+                found = self._entities(owner, full)
+                if found:
+                    return full if all(entity.kind in _TYPES for entity in found) else ""
+            if not scope:
+                return ""
+            scope = scope.rpartition("::")[0]
+
+    def _handed_on(self, package: str, first: str) -> list[str]:
+        """A package, and what it hands on to its dependants, also through each other: first the one of a name."""
+        found = [first, package]
+        for one in found:
+            found.extend(other for other in self.offers.exports(one) or () if other not in found)
+        return found
+
+
+_FUNDAMENTAL = frozenset(("void", "bool", "char", "int", "unsigned int", "float", "double"))
+_POINTERS = frozenset(("SharedPtr", "ConstSharedPtr", "WeakPtr", "ConstWeakPtr", "UniquePtr"))
+_TYPES = frozenset(("class", "struct", "enum"))
+
+
+def _forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
+    """The other forms of a name, the nearest first: an event, the form on the other side of it, and whether that is of
+    earlier versions."""
+    offer = offers.package(offered.package)
+    events = offer.line.events.get(offered.side, {}).get(offered.name, ()) if offer is not None else ()
+    for event in reversed(events):
+        if offer is not None and event.place <= offer.place and event.had is not None:
+            yield event, event.had, True
+    for event in events:
+        if offer is not None and event.place > offer.place and event.has is not None:
+            yield event, event.has, False
+
+
+@lru_cache(maxsize=4096)
+def _agree(one: str, other: str, parameters: tuple[str, ...]) -> bool:
+    """Whether two types as written can be the same: but for scopes that one of them leaves out, and for what stands for
+    the parameters of the template in which the other is written."""
+    names, others = _parts(one), _parts(other)
+    return len(names) == len(others) and all(
+        a == b or a.endswith(f"::{b}") or b.endswith(f"::{a}") or b.partition("::")[0] in parameters
+        for a, b in zip(names, others, strict=True)
+    )
+
+
+def _parts(type_: str) -> list[str]:
+    """The names and signs of a type, without what callers do not see."""
+    bare = re.sub(r"\btypename\b", " ", type_)
+    bare = re.sub(r"\bconst\b", " ", bare) if not bare.endswith(("&", "*")) else bare
+    return re.findall(r"(?:::)?\w+(?:::\w+)*|[^\w\s]", bare)
+
+
+_SHAPE = re.compile(r"(?:\b|::)(Const)?(Shared|Weak|Unique)Ptr\b|\b(shared|weak|unique)_ptr<")
+
+
+def _unlike(one: str, other: str) -> bool:
+    """Whether two types differ in more than what an alias can stand for: a reference against a value, or one sort of
+    smart pointer against another."""
+    if one.endswith("&") != other.endswith("&"):
+        return True
+    sorts = [
+        [(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)
+    ]
+    return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
+
+
+def _last(type_: str) -> str:
+    """A type without its scopes."""
+    return "".join(re.sub(r"(?:\w+::)+(?=\w)", "", "".join(_parts(type_))))
