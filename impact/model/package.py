@@ -17,6 +17,7 @@ import msgspec
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
+from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
@@ -252,6 +253,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     undefined: tuple[ImportUse, ...] = ()
     # Sources, each with another one that defines a function which it seems to use, and the function.
     own_calls: tuple[tuple[str, str, str], ...] = ()
+    # Files that name folders of distros.
+    distros: tuple[tuple[str, DistroFile], ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -415,8 +418,15 @@ class _Join:
         )
 
     def digest(self) -> LinkedPackage:
+<<<<<<< HEAD
         allows, problems = [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+=======
+        allows, problems, distros = [], [], []
+        aside = (
+            _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        )
+>>>>>>> hard
         python: dict[str, PythonFile] = {}
         interpreted: set[str] = set()
         shells: list[str] = []
@@ -432,6 +442,8 @@ class _Join:
                 continue
             if file.allows:
                 allows.append((path, file.allows))
+            if file.distros is not None:
+                distros.append((path, file.distros))
             facts = file.facts
             if facts is None:
                 continue
@@ -530,6 +542,7 @@ class _Join:
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
+            distros=tuple(distros),
         )
 
     def answers(self, include: str, includer: str) -> str | None:
