@@ -418,15 +418,8 @@ class _Join:
         )
 
     def digest(self) -> LinkedPackage:
-<<<<<<< HEAD
-        allows, problems = [], []
-        of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
-=======
         allows, problems, distros = [], [], []
-        aside = (
-            _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
-        )
->>>>>>> hard
+        of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
         interpreted: set[str] = set()
         shells: list[str] = []
