@@ -2,20 +2,19 @@
 
 What it does
     Reports sources of targets, files given to test commands, and what include() and add_subdirectory() read, where
-    neither the tree has the file nor the build makes it, data files and modules that setup.py names (ament_python), and
-    launch files, parameters and robot descriptions that a launch file opens in the share folder of a package of the
-    workspace. Of paths in CMake that are there, those that lead out of the package's folder (`../common.cmake`), that
+    neither the tree has the file nor the build makes it, and launch files, parameters and robot descriptions that a
+    launch file opens in the share folder of a package of the workspace. Of paths in CMake that are there, those that lead out of the package's folder (`../common.cmake`), that
     begin in somebody's home folder, or below `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the
     package.
 
 Why it breaks
-    CMake stops: "Cannot find source file", "could not find requested file"; setuptools stops: "can't copy". A release
+    CMake stops: "Cannot find source file", "could not find requested file". A release
     holds the package's folder alone, and `${CMAKE_SOURCE_DIR}` is that folder where it is built alone, as by colcon,
     catkin_make_isolated and the build farm. A launch file stops when it opens the file.
 
 Severity
     error for what a build reads; warning for tests, under a condition, where something is downloaded for the build, for
-    what exists elsewhere, for modules of programs, and for what launch files open; note for files outside of a package
+    what exists elsewhere, and for what launch files open; note for files outside of a package
     that was never released.
 
 Example
@@ -48,8 +47,6 @@ _CORRECT = "correct the path, or drop it"
     texts={
         "source": Text("`{by}` is built of `{subject}`, which does not exist", _CORRECT),
         "test": Text("the test `{subject}` does not exist, so CMake stops", _CORRECT),
-        "data": Text("setup.py installs `{subject}`, which is no file of `{package}`", _CORRECT),
-        "module": Text("the program `{by}` runs the module `{subject}`, which does not exist", "correct its name"),
         "read": Text("{by}() reads `{subject}`, which does not exist", _CORRECT),
         "opened": Text("`{subject}` of `{by}` is opened but does not exist", "correct the path, or create the file"),
         "above": Text(
@@ -65,7 +62,6 @@ _CORRECT = "correct the path, or drop it"
 )
 def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     yield from _list_opened(view, package)
-    yield from _list_of_setup(view, package)
     seen: set[str] = set()
     for use in _list_paths(package):
         kind, subject = _judge(view, package, use)
@@ -198,20 +194,3 @@ def _is_renamed(owner: Package, name: str) -> bool:
         return True
     places = (to for i in installs for _, to in copied_files(i, i.destination, owner.digest.files))
     return f"share/{owner.name}/{name}" in places
-
-
-def _list_of_setup(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    """What setup.py of an ament_python package names and the package does not have."""
-    for path, file in package.digest.setup if package.build_type == "ament_python" else ():
-        if path != posixpath.join(package.path, "setup.py"):
-            continue
-        for _, name, line in file.data_files:
-            data = posixpath.normpath(posixpath.join(package.path, name))
-            known = data in package.files or view.workspace.is_unread(data)
-            if not known and not re.search(r"[$*?\[\]{}]", name) and not name.startswith(("/", "..")):
-                yield Diagnostic(At(path, line), name, package.name, kind="data")
-        for name, module, line in file.entry_points:
-            place = posixpath.join(package.path, module.replace(".", "/"))
-            own = posixpath.join(package.path, module.partition(".")[0]) in package.folders and not file.package_dirs
-            if own and f"{place}.py" not in package.files and place not in package.folders:
-                yield Diagnostic(At(path, line), module, package.name, {"by": name}, "module", (Doubt.LATE,))
