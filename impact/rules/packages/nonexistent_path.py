@@ -3,19 +3,18 @@
 What it does
     Reports sources of targets, files given to test commands, and what include() and add_subdirectory() read, where
     neither the tree has the file nor the build makes it, and launch files, parameters and robot descriptions that a
-    launch file opens in the share folder of a package of the workspace. Of paths in CMake that are there, those that lead out of the package's folder (`../common.cmake`), that
-    begin in somebody's home folder, or below `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the
-    package.
+    launch file opens in the share folder of a package of the workspace. Of paths in CMake that are there, those that
+    lead out of the package's folder (`../common.cmake`), that begin in somebody's home folder, or below
+    `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the package.
 
 Why it breaks
-    CMake stops: "Cannot find source file", "could not find requested file". A release
-    holds the package's folder alone, and `${CMAKE_SOURCE_DIR}` is that folder where it is built alone, as by colcon,
-    catkin_make_isolated and the build farm. A launch file stops when it opens the file.
+    CMake stops: "Cannot find source file", "could not find requested file". A release holds the package's folder
+    alone, and `${CMAKE_SOURCE_DIR}` is that folder where it is built alone, as by colcon, catkin_make_isolated and the
+    build farm. A launch file stops when it opens the file.
 
 Severity
     error for what a build reads; warning for tests, under a condition, where something is downloaded for the build, for
-    what exists elsewhere, and for what launch files open; note for files outside of a package
-    that was never released.
+    what exists elsewhere, and for what launch files open; note for files outside of a package that was never released.
 
 Example
     add_executable(sled_node src/sled_nod.cpp)
