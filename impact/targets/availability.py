@@ -41,6 +41,8 @@ _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
     "plugin": ("plugins", lambda build: (name for plugin in build.plugins for name in (plugin.name, plugin.type))),
 }
 _WITH_ALIKE = frozenset(("executable", "launch file", "plugin", "target"))
+_STARTED = frozenset(("executable", "launch file", "plugin"))
+"""Kinds whose names are misspelt where no version has them and the target's has one like them."""
 _STATES: dict[str, State] = {
     "removed": "removed",
     "moved": "removed",
@@ -241,6 +243,9 @@ class Availabilities:
         offered = offer.get(side, name)
         if offered is None or not decides(offer, offered):
             has = offered is None and self._has(offer, side, name)
+            if offered is None and not has and offer.exact and side in _STARTED and (alike := _meant(offer, side, name)):
+                if all(one != _BUILT[side][0] for one, _ in offer.build.unknown):
+                    return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
             return Availability(symbol, "present" if has else "unknown", package, offer.version)
         state = _STATES[offered.state]
         sure = offered.sure
@@ -386,7 +391,7 @@ def _with_other(offer: PackageOffer, offered: Offered) -> Evidence:
     )
 
 
-_ALIKE = 0.75
+_ALIKE, _MISSPELT = 0.75, 0.85
 """How much of two names has to agree, as difflib measures it."""
 
 
@@ -394,3 +399,16 @@ def _alike(offer: PackageOffer, side: str, name: str) -> str:
     """What the target's version has that is called most alike; empty where nothing is."""
     close = difflib.get_close_matches(name, list(dict.fromkeys(_BUILT[side][1](offer.build))), 1, _ALIKE)
     return close[0] if close else ""
+
+
+def _meant(offer: PackageOffer, side: str, name: str) -> str:
+    """What the target's version has and a name is a misspelling of: only the last part of it differs, by little."""
+    alike = _alike(offer, side, name)
+    (head, tail), (other_head, other) = _split(name), _split(alike)
+    near = head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
+    return alike if near else ""
+
+
+def _split(name: str) -> tuple[str, str]:
+    at = max(name.rfind("/"), name.rfind(":")) + 1
+    return name[:at], name[at:]
