@@ -208,6 +208,19 @@ def test_fixes_are_printed_as_a_patch(say, curable):
     assert (curable / "a/package.xml").read_text() == MANIFEST
 
 
+@pytest.mark.parametrize(("folder", "listed"), [("third_party/a", False), ("a", True), ("src/Vendor/own/a", False)])
+def test_other_peoples_code_is_reported_and_not_fixed(say, curable, folder, listed):
+    inner = curable / "moved"
+    (curable / "a").rename(inner)
+    (curable / folder).parent.mkdir(parents=True, exist_ok=True)
+    inner.rename(curable / folder)
+    if listed:
+        (curable / ".gitmodules").write_text('[submodule "a"]\n\tpath = a\n\turl = ../a.git\n')
+    said = say("check", curable, "-t", "jazzy", "--diff")
+    assert said.status == 1
+    assert said.out == ""
+
+
 def test_fixes_are_written_and_what_remains_is_reported(say, curable):
     said = say("check", curable, "-t", "jazzy", "--fix")
     assert "1 file changed" in said.err

@@ -91,7 +91,7 @@ def check_opened(
     if any(finding.fix for finding in found):
         from . import fix
 
-        found = fix.make_fixes(found, make_reader(tree), originals)
+        found = fix.make_fixes(found, make_reader(tree), originals, getattr(tree, "submodules", ()))
     known: Sequence[Finding] = ()
     if options.baseline:
         found, known = split_by_baseline(found, read_baseline(options.baseline))

@@ -6,7 +6,7 @@ import os
 import re
 from array import array
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from typing import NamedTuple
 from ...edges.files import write_file
 from ..rules.fix_actions import Declare, Insert, Remove, Replace
 from ..rules.rule import Edit, Finding, FixAction
+from ..tree.paths import is_vendored
 
 _BOM = b"\xef\xbb\xbf"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*\Z")
@@ -59,15 +60,25 @@ class Applied(NamedTuple):
 
 
 def make_fixes(
-    findings: Iterable[Finding], read: Callable[[str], bytes | None], originals: dict[str, bytes] | None = None
+    findings: Iterable[Finding],
+    read: Callable[[str], bytes | None],
+    originals: dict[str, bytes] | None = None,
+    submodules: Collection[str] = (),
 ) -> list[Finding]:
     """Findings whose fixes are byte edits: what rules propose by name and place is looked up in the files.
 
     read: bytes of a path, None when it cannot be read. A fix of which a part cannot be made, or would change nothing,
-    is dropped. What several findings want of one dependency is declared once, in a form that holds for all.
-    originals: gets what was read, which the edits count in.
+    is dropped, and so is one of other people's code: in folders such as third_party, and in submodules. What several
+    findings want of one dependency is declared once, in a form that holds for all. originals: gets what was read, which
+    the edits count in.
     """
-    findings = list(findings)
+    foreign = tuple(f"{folder}/" for folder in submodules)
+    findings = [
+        finding._replace(fix=())
+        if any(is_vendored(action.path) or action.path.startswith(foreign) for action in finding.fix)
+        else finding
+        for finding in findings
+    ]
     wanted: dict[tuple[str, str], set[str]] = {}
     for finding in findings:
         for action in finding.fix:

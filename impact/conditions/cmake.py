@@ -175,11 +175,13 @@ class _OnMachine(CMakeTest):
         return None if held is None else held.upper() not in _FALSE
 
     def found(self, package: str) -> bool | None:
-        """Packages that exist in one generation of ROS alone, and what is declared and there: what else is installed is
-        not known."""
+        """Packages that exist in one generation of ROS alone, what is declared and there, and what was taken out of ROS
+        or renamed: what else is installed is not known."""
         if self.environment.ros_version and package in _ROS1_ONLY | _ROS2_ONLY:
             return (package in _ROS1_ONLY) == (self.environment.ros_version == "1")
-        return True if package in self.declared and self.environment.packages(package) else None
+        if package in self.declared:
+            return True if self.environment.packages(package) else None
+        return False if self.environment.gone("package", package) else None
 
     def unary(self, kind: str, operand: Token) -> bool | None:
         argument = operand.text
@@ -189,6 +191,8 @@ class _OnMachine(CMakeTest):
                 return True
             if argument.startswith("ENV{") and not _USUALLY_SET.match(argument[4:-1]):
                 return False
+        if kind == "COMMAND" and self.environment.gone("command", argument):
+            return False
         return None
 
     def expand(self, text: str) -> str | None:

@@ -23,6 +23,10 @@ def _nothing_known(name: str) -> None:
     return None
 
 
+def _nothing_gone(kind: str, name: str) -> bool:
+    return False
+
+
 @dataclass(frozen=True, eq=False)
 class Environment:
     """What is known of one machine.
@@ -31,7 +35,8 @@ class Environment:
     versions: the version of a package or library by name (`rclcpp`, `opencv`, `gcc`), None when unknown. packages:
     whether a ROS package is there, None for names that are none's. headers: whether the compiler finds a header, None
     when unknown. testing: whether tests are built, None when both must be
-    considered. An empty string stands for unknown.
+    considered. gone: whether a `package` or a `command` of CMake that once was is surely not there. An empty string
+    stands for unknown.
     """
 
     ros_distro: str = ""
@@ -42,6 +47,7 @@ class Environment:
     packages: Callable[[str], bool | None] = _nothing_known
     headers: Callable[[str], bool | None] = _nothing_known
     testing: bool | None = None
+    gone: Callable[[str, str], bool] = _nothing_gone
 
 
 # Names used by macros and CMake variables, in lower case, where they differ from the package's or library's own.

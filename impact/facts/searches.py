@@ -13,7 +13,7 @@ import msgspec
 from .condition import Condition
 from .cpp.lexical import CppFile, places_of
 from .place import Problem
-from .usage import Rows, UsageTable, WatchedUse, find_uses, initialises, uses_of
+from .usage import Rows, UsageTable, WatchedUse, find_uses, initialises, methods_of, uses_of
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -50,16 +50,20 @@ def _word_use(data: bytes, word: str) -> WordUse:
 
 
 class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """uses: what a Python file or one of parameters has of what Rows describe."""
+    """uses: what a Python file or one of parameters has of what Rows describe. functions: those that such uses call and
+    that a Python file defines itself."""
 
     uses: tuple[WatchedUse, ...] = ()
     problems: tuple[Problem, ...] = ()
+    functions: tuple[str, ...] = ()
 
 
 def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
     """The uses of a table that a file has."""
     rows = [(label, pattern) for label, pattern in table.rows if pattern.word.encode() in data]
-    return SearchedText(tuple(use for row in rows for use in uses_of(data, [row])))
+    called = {pattern.word for _, pattern in rows if pattern.calls and pattern.language == "python"}
+    uses = tuple(use for row in rows for use in uses_of(data, [row]))
+    return SearchedText(uses, functions=methods_of(data, called))
 
 
 class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):

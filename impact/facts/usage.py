@@ -155,7 +155,7 @@ def stamp_of(*tables: object) -> str:
 
 
 def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[WatchedUse, ...], tuple[str, ...]]:
-    """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
+    """The uses in a C++ file that a table describes, see uses_of(), and those functions
     that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
     text = scan(data).visible
@@ -175,13 +175,15 @@ def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[Wat
 
 
 def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[WatchedUse]:
-    """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
+    """Every call that a row describes, and the first of its other uses under each set of conditions. rows: labels and
+    patterns of one word."""
     seen = set()
     for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
-        key = (number, place[2])
+        label, pattern = rows[number]
+        key = (number, place[2], place[:2] if pattern.calls else ())
         if key not in seen:
             seen.add(key)
-            yield WatchedUse(rows[number][0], *place)
+            yield WatchedUse(label, *place)
 
 
 def template_arguments(text: str, at: int) -> re.Match[str] | None:
@@ -207,6 +209,16 @@ def declares(data: bytes, function: str) -> bool:
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
     return False
+
+
+_DEFINED = re.compile(rb"(?m)^[ \t]+(?:async[ \t]+)?def[ \t]+(\w+)[ \t]*\(")
+
+
+def methods_of(data: bytes, functions: Collection[str]) -> tuple[str, ...]:
+    """Those of some functions that a Python file seems to define as methods, or in functions."""
+    if not any(function.encode() in data for function in functions):
+        return ()
+    return tuple(sorted({name.decode() for name in _DEFINED.findall(data)}.intersection(functions)))
 
 
 def initialises(data: bytes, variable: str) -> bool:

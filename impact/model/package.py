@@ -235,12 +235,16 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     shells: tuple[str, ...] = ()
     interpreted: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    # Declared dependencies that words of launch files, YAML or robot descriptions name.
+    named: tuple[str, ...] = ()
     # Watched names that the package's own files #define.
     defined: tuple[str, ...] = ()
     # Watched uses, by their labels.
     uses: tuple[NameUse, ...] = ()
     # Functions that a watched use calls and that the package declares itself, a method of its own base class maybe.
     functions: tuple[str, ...] = ()
+    # The same of methods in Python.
+    methods: tuple[str, ...] = ()
     # Fields and constants of other packages' interfaces that only some versions have.
     members: tuple[MemberUse, ...] = ()
     python_api: tuple[PythonApiUse, ...] = ()
@@ -396,6 +400,7 @@ class _Join:
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
+        self.python_methods: set[str] = set()
         self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
@@ -425,6 +430,7 @@ class _Join:
         shells: list[str] = []
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
+        data_words: list[str] = []
         references, plugins, registered, setup, interfaces = [], [], [], [], []
         for path in self.files:
             kind = self.kinds.get(path)
@@ -452,6 +458,7 @@ class _Join:
                 references.extend((path, r) for r in facts.references)
                 if any(item.module.split(".")[0] == "launch_ros" for item in facts.imports):
                     launches.append((path, "launch_python"))
+                    data_words.append(facts.words)
             elif isinstance(facts, Interface):
                 name = facts.name or posixpath.basename(path).rsplit(".", 1)[0]
                 interfaces.append(InterfaceFile(name, path, facts))
@@ -460,6 +467,7 @@ class _Join:
             elif isinstance(facts, CMakeFile):
                 interpreted.update(_scripts_run(facts))
             else:
+                data_words.append(getattr(facts, "words", ""))
                 if path.endswith((".yaml", ".yml")):
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
@@ -518,10 +526,12 @@ class _Join:
             scripts=tuple(p for p, f in python.items() if f.interpreter),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
+            named=self.find_named(data_words),
             defined=tuple(sorted(self.defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
             functions=tuple(sorted({name for found in self.searched.values() for name in found.functions})),
+            methods=tuple(sorted(self.python_methods)),
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
@@ -714,6 +724,11 @@ class _Join:
                               conditions + self.macros.asked(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
 
+    def find_named(self, texts: Iterable[str]) -> tuple[str, ...]:
+        """The declared dependencies that stand among the words of files."""
+        declared = {dependency.name for dependency in self.manifest.dependencies}
+        return tuple(sorted({name for text in texts for name in declared.intersection(text.split(" "))}))
+
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
         importing: dict[str, list[str]] = {}
@@ -721,6 +736,7 @@ class _Join:
             for package in {item.module.split(".")[0] for item in facts.imports} & self.watched.modules.keys():
                 importing.setdefault(package, []).append(path)
         found = {p: self.look(paths, "searched_text", self.watched.in_python[p]) for p, paths in importing.items()}
+        self.python_methods.update(name for each in found.values() for one in each.values() for name in one.functions)
         for path in files:
             for package in sorted(found):
                 yield from self.alike(path, "python", found[package])
@@ -868,7 +884,8 @@ class _Join:
             uses = ApiUses(resolver, heads)
             for found in (*uses.found(words), *(uses.unimplemented(exported) if has_exported else ())):
                 around = code.conditions(found.offset)
-                key = (*found._replace(offset=0), around)
+                # Every call is a use of its own.
+                key = (*(found if found.how == "call" else found._replace(offset=0)), around)
                 if around is not None and key not in seen:
                     seen.add(key)
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,

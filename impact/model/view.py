@@ -167,6 +167,7 @@ class TargetView:
             packages=lambda name: self._has_package(name, target),
             headers=self._has_header,
             testing=True,
+            gone=lambda kind, name: self._is_gone(kind, name, target),
         )
 
     def _has_package(self, name: str, target: Target) -> bool | None:
@@ -174,6 +175,14 @@ class TargetView:
         if name in self.workspace.packages or target.version(name) is not None:
             return True
         return False if target.ever_released(name) else None
+
+    def _is_gone(self, kind: str, name: str, target: Target) -> bool:
+        """Whether known changes tell that a target has a package, or a command of CMake, no longer."""
+        kinds = ("cmake-removed", "cmake-renamed") if kind == "command" else ("package-removed", "package-renamed")
+        if kind == "package" and (self._has_package(name, target) or target.resolve(name) is not None):
+            return False
+        by_name, name = target.changes().by_name, name.lower() if kind == "command" else name
+        return any(change.state == "removed" for each in kinds for change in by_name.get((each, name), ()))
 
     def _has_header(self, path: str) -> bool | None:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
@@ -572,6 +581,7 @@ class TargetView:
             ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else None,
             codename=target.platform.split(" ")[-1], versions=version,
             packages=lambda name: self._has_package(name, target), testing=True,
+            gone=lambda kind, name: self._is_gone(kind, name, target),
         )  # fmt: skip
 
     @property

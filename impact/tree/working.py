@@ -64,6 +64,8 @@ class WorkingTree(Walked):
         self._remembered: dict[str, tuple[tuple[int, int, int, int], str]] = {}
         self._fresh = False
         self._indexes: dict[str, Index | None] = {}
+        self.submodules: list[str] = []
+        """Folders that .gitmodules name, once the entries are known."""
 
     @property
     def repositories(self) -> dict[str, str]:
@@ -211,6 +213,8 @@ class WorkingTree(Walked):
             if key.strip() != b"path":
                 continue
             path = inside(join(folder, value.strip().strip(b'"').decode("utf-8", "surrogateescape")))
+            if path:
+                self.submodules.append(path)
             if path and not self._holds_something(path):
                 self.problems.append(PathProblem(path, "submodule that is not checked out"))
 

@@ -17,7 +17,7 @@ CPP = [
     ),
     ("#define A changed\n", (), (), [WordUse("changed", 1, 11)]),
     ("unchanged(1);\n", (), (), []),
-    ("n.advertise(1);\nn.advertise(2);\n", [("advertise(a)", 1, 3)], (), []),
+    ("n.advertise(1);\nn.advertise(2);\n", [("advertise(a)", 1, 3), ("advertise(a)", 2, 3)], (), []),
     ("n.advertise(1, 2);\n", (), (), []),
     ("void advertise(int a);\nn.advertise(1);\n", [("advertise(a)", 2, 3)], ("advertise",), []),
 ]  # fmt: skip

@@ -177,6 +177,7 @@ SIGNATURES = [
     ("find_package(X REQUIRED c1 OPTIONAL_COMPONENTS o1)", dict(components=("c1",), optional_components=("o1",))),
     ("find_package(X COMPONENTS c1 c2 REQUIRED)", dict(components=("c1", "c2"), required=True)),
     ("find_package(X NO_MODULE)", dict(components=())),
+    ("find_package(Y 1.2 NAMES X REQUIRED COMPONENTS c)", dict(version="1.2", required=True, components=("c",))),
     ("find_package(X CONFIG HINTS /a /b)", dict(components=())),
     ("find_package(X ${V} REQUIRED COMPONENTS c)", dict(version="", components=("c",))),
     ("pkg_check_modules(P REQUIRED X>=1.2)", dict(how="pkg_check_modules", version="1.2", prefix="P", required=True)),
@@ -188,6 +189,11 @@ SIGNATURES = [
     ("find_path(V X PATHS /a)", dict(how="find_path")),
     ("find_program(V X REQUIRED)", dict(how="find_program", required=True)),
 ]
+
+
+def test_any_of_several_names_will_do():
+    found = build("find_package(Y REQUIRED NAMES X1 X2 PATHS /a)").found
+    assert [(one.name, one.required, one.quiet) for one in found] == [("X1", False, True), ("X2", False, True)]
 
 
 @pytest.mark.parametrize(("source", "expected"), SIGNATURES)

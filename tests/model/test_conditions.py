@@ -256,6 +256,24 @@ def test_what_a_package_declares_is_found_where_it_is_there(text, declared, expe
 
 
 @pytest.mark.parametrize(
+    ("text", "declared", "expected"),
+    [
+        ("old_FOUND", (), False),
+        ("NOT old_FOUND", (), True),
+        ("old_FOUND", ("old",), None),  # it may be built from its sources
+        ("other_FOUND", (), None),
+        ("COMMAND old_macro", (), False),
+        ("NOT COMMAND old_macro", (), True),
+        ("COMMAND other_macro", (), None),
+    ],
+)
+def test_what_is_gone_is_not_found(text, declared, expected):
+    gone = {("package", "old"), ("command", "old_macro")}
+    environment = Environment(ros_version="2", gone=lambda kind, name: (kind, name) in gone)
+    assert holds(Condition("cmake", text, declared=declared), environment) is expected
+
+
+@pytest.mark.parametrize(
     ("text", "negated", "expected"),
     [
         ("NOT CUDA_FOUND", True, True),

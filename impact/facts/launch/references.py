@@ -28,7 +28,7 @@ class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions
     whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
-    files and YAML, see words_of().
+    files, YAML and robot descriptions, see words_of().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
     and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
@@ -132,8 +132,8 @@ def extract(data: bytes, kind: str) -> ReferenceFile:
     return structs.replace(facts, words=words_of(data)) if kind in _SPOKEN else facts
 
 
-# What sets parameters, as far as its name tells.
-_SPOKEN = frozenset(("launch_xml", "launch_yaml", "params"))
+# What sets parameters or names plugins, as far as its name tells.
+_SPOKEN = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
 
 
 def _xml(data: bytes) -> ReferenceFile:

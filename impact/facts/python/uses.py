@@ -29,7 +29,7 @@ class CallArguments(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of something of another module, the first one like it.
+    """A use of something of another module, the first one like it. more: lines and columns of further calls like it.
 
     name: dotted, import aliases resolved; a relative import has leading dots. A member of an object is called by what
     made the object, `pkg.mod.Class.member`, whether that is a class or a function.
@@ -49,6 +49,7 @@ class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     lazy: bool = False
     alone: bool = True
     conditions: tuple[Condition, ...] = ()
+    more: tuple[tuple[int, int], ...] = ()
 
 
 class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -79,6 +80,7 @@ class _Raw(NamedTuple):
     offset: int
     lazy: bool
     conditions: tuple[Condition, ...]
+    more: list[tuple[int, int]]
 
 
 # A type is a dotted name; of the file's own classes the name after this mark. Empty: not known. Behind a dot stands
@@ -294,7 +296,9 @@ class ObjectUses(PythonValues):
         lazy = self.may_not_run
         key = (type_, member, given, conditions, lazy)
         if key not in self.raw:
-            self.raw[key] = _Raw(type_, member, given, node.lineno, node.col_offset, lazy, conditions)
+            self.raw[key] = _Raw(type_, member, given, node.lineno, node.col_offset, lazy, conditions, [])
+        elif given is not None:
+            self.raw[key].more.append((node.lineno, node.col_offset))
 
     def enter_class(self, node: ast.ClassDef) -> _Class:
         """A class of the file, from here on known by its name."""
@@ -328,10 +332,16 @@ class ObjectUses(PythonValues):
             for type_, alone in self.types(raw):
                 name = f"{type_}.{raw.member}" if raw.member else type_
                 key = (name, how, raw.given, raw.conditions)
+                more = tuple((line, column(line, offset)) for line, offset in raw.more)
+                use = PythonUse(name, how, raw.line, column(raw.line, raw.offset), raw.given, "", raw.lazy, alone,
+                                raw.conditions, more)  # fmt: skip
                 known = found.get(key)
-                if known is None or (known.lazy and not raw.lazy):
-                    at = column(raw.line, raw.offset)
-                    found[key] = PythonUse(name, how, raw.line, at, raw.given, "", raw.lazy, alone, raw.conditions)
+                if known is not None and raw.given is not None and known.line != use.line:
+                    first, other = (use, known) if known.lazy and not raw.lazy else (known, use)
+                    places = (*first.more, (other.line, other.column), *other.more)
+                    found[key] = msgspec.structs.replace(first, more=places)
+                elif known is None or (known.lazy and not raw.lazy):
+                    found[key] = use
         for key, one in self.classes.items():
             bases = [] if key.isdigit() else [base for base, _ in self.bases(one) if base and not _standard(base)]
             for base in bases:

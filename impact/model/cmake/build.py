@@ -201,7 +201,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
     that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
-    asks for and that do not lie in the package."""
+    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -229,6 +229,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     before_catkin_package: tuple[str, ...] = ()
     repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
+    asked: tuple[str, ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

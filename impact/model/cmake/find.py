@@ -49,6 +49,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     flags: set[str] = set()
     components: list[Word] = []
     optional: list[Word] = []
+    sought: list[Word] = []  # instead of the name
     version = ""
     section = ""
     for index, item in enumerate(rest):
@@ -63,6 +64,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             optional.append(item)
         elif section == "COMPONENTS":
             components.append(item)
+        elif section == "NAMES":
+            sought.append(item)
         elif (not section and index == 0 and _VERSION.match(item)) or (
             not section and not version and _VERSION.match(item)
         ):
@@ -93,14 +96,17 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
                 conditions=merge(conditions, component.conditions),
             )
             run.extend(component, component.at)
-    else:
+    for one in split_words(sought) or ([name] if name != "catkin" else []):
+        if is_unknown(one):
+            continue
+        alone = len(sought) < 2  # else any of them will do
         run.add_found(
             FoundPackage(
-                str(name),
+                str(one),
                 "find_package",
-                run.place(name.at),
-                required,
-                quiet,
+                run.place(one.at),
+                required and alone,
+                quiet or not alone,
                 version,
                 "EXACT" in flags,
                 tuple((str(component), run.place(component.at)) for component in components),
@@ -109,7 +115,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
                 conditions,
             )
         )
-    if not flags & {"CONFIG", "NO_MODULE"}:
+    if not (sought or flags & {"CONFIG", "NO_MODULE"}):
         if required:
             run.use_feature(f"Find{name}", name.at)
         _run_module(run, call, str(name))

@@ -157,6 +157,7 @@ class Interpreter:
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
+        self.asked: dict[str, None] = {}
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -258,6 +259,7 @@ class Interpreter:
             before_catkin_package=self.before_catkin_package,
             repeated=tuple(self.repeated),
             read_elsewhere=tuple(self.read_elsewhere),
+            asked=tuple(self.asked),
         )
 
     def _project_by_variable(self) -> bool:
@@ -431,8 +433,10 @@ class Interpreter:
 
     def test(self, text: str, *, negated: bool = False) -> Condition:
         """A test of this package that is not decided."""
-        known = {*self.declared.build, *self.declared.test, *self.declared.exported} if "_FOUND" in text else ()
-        declared = tuple(name for name in packages_asked(text) if name in known) if known else ()
+        asked = packages_asked(text) if "_FOUND" in text else ()
+        self.asked.update(dict.fromkeys(asked))
+        known = {*self.declared.build, *self.declared.test, *self.declared.exported} if asked else ()
+        declared = tuple(name for name in asked if name in known)
         return Condition("cmake", text, negated, declared)
 
     def at_gate(self, test: Condition) -> bool:

@@ -112,12 +112,15 @@ def _list_reviewed_of(
 ) -> Iterator[Diagnostic | Upcoming]:
     # A method that the package or what it is built with declares may be meant wherever its name is called.
     within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
-    own = {function for each in within for function in each.digest.functions}
+    own = {
+        "cpp": {function for each in within for function in each.digest.functions},
+        "python": {method for each in within for method in each.digest.methods},
+    }
     for use in package.digest.uses:
         change, ahead = refused.get(use.text, (None, None))
         if (
             change is None
-            or function_of(use.text) in own
+            or function_of(use.text) in own.get(use.language, ())
             or not view.active(use.conditions)
             or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
             or (ahead is not None and not view.active_on(ahead, use.conditions))

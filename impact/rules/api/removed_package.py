@@ -19,7 +19,7 @@ Use instead
 
 Not reported
     Names that the workspace, the target's distro or rosdep provides all the same; dependencies under a condition that
-    does not hold on the target.
+    does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
 from ...model.view import TargetView
@@ -52,7 +52,7 @@ def list_gone_packages(view: TargetView, kind: str):
         uses += [
             (f.name, "found", f.at, (*doubts_of_place(view, "build", f.conditions), f.required or Doubt.OPTIONAL))
             for f in package.build.found
-            if view.active(f.conditions)
+            if view.active(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
         ]
         seen = set()
         for name, how, at, doubts in uses:

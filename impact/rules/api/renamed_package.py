@@ -19,7 +19,7 @@ Use instead
 
 Not reported
     Names that the workspace, the target's distro or rosdep provides all the same; dependencies under a condition that
-    does not hold on the target.
+    does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
 from ...model.view import TargetView

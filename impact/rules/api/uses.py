@@ -91,6 +91,7 @@ def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     own = {name for one in view.workspace for name in one.digest.defined}
     unserved: list[tuple[CppApiUse, Availability]] = []
     overridden: set[tuple[str, str]] = set()
+    answers: dict[tuple, list[Availability]] = {}
     for use in package.digest.cpp_api:
         if use.package not in near or use.name in own or not view.active(use.conditions):
             continue
@@ -101,7 +102,9 @@ def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
             continue
         asked = use.package, use.name, use.how, use.arguments, use.given, use.templated
         ask: Ask = lambda offers, _, asked=asked: availability_of_use(offers, *asked)  # noqa: E731
-        found = list(_answers(view, ask, (use.package,), use.conditions))
+        found = answers.get((asked, use.conditions))
+        if found is None:
+            found = answers[asked, use.conditions] = list(_answers(view, ask, (use.package,), use.conditions))
         unserved += [(use, one) for one in found]
         if use.how == "override" and (not found or says_override(use.given, use.arguments)):
             overridden.add((class_of(use.given, use.arguments), use.name))
@@ -125,20 +128,25 @@ def _list_python(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     if not package.digest.python_api:
         return
     reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
-    patterns = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "python"}
+    told = {change.old for change in view.changes("call-changed")}
+    patterns = {
+        (use.at.path, use.at.line) for use in package.digest.uses if use.language == "python" and use.text in told
+    }
     for one in package.digest.python_api:
         use = one.use
         head = use.name.partition(".")[0]
         if head in view.own_modules or not use.alone or not view.certain(use.conditions):
             continue
-        if (one.at.path, one.at.line) in patterns or not reviewed.isdisjoint(_list_heads(use.name)):
+        if not reviewed.isdisjoint(_list_heads(use.name)):
             continue
         owners = packages_of(head)
         ask: Ask = lambda _, python, use=use, owners=owners: python.ask(use, owners)  # noqa: E731
         for found in _answers(view, ask, owners, use.conditions):
             keywords = use.given.keywords if use.given is not None else ()
             doubts = _doubts_of_python(view, one, found)
-            yield UnservedUse(one.at, found.symbol.name, found, doubts, keywords=keywords)
+            for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
+                if (at.path, at.line) not in patterns:
+                    yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
 
 
 def _doubts_of_python(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:

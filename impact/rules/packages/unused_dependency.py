@@ -2,7 +2,7 @@
 
 What it does
     Reports build and run dependencies for which no find_package, include, import, launch reference, message field,
-    plugin or exported name was found.
+    plugin or exported name was found, and that no launch file, YAML or robot description mentions.
 
 Why it matters
     Each one is installed on every machine, and can be removed from a distro.
@@ -73,6 +73,7 @@ def unused_dependency(view: TargetView, package: Package):
         if (
             name in used
             or name in included
+            or name in package.digest.named
             or not kinds & {"build", "exec"}
             or name.startswith(_SILENT)
             or name.endswith(_SILENT)
