@@ -117,10 +117,10 @@ class SystemLibraries:
 
     def included(self, header: str, platform: str) -> Including | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
-        neither has it, or it is of no library that was read."""
+        neither has it, one of them was not read, or it is of no library that was."""
         library = self.of_header(header)
-        versions = tuple(filter(None, self.around(library, platform))) if library else ()
-        known = self._file.included(library, 0) if versions else None
+        versions = self.around(library, platform) if library else ()
+        known = self._file.included(library, 0) if versions and all(versions) else None
         found: dict[str, None] = {}
         there = False
         for version in versions if known is not None else ():
