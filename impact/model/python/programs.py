@@ -61,7 +61,7 @@ class ScriptSetup:
         for file in self._files.values():
             if file.unresolved:
                 return None
-            for name, _, _ in file.entry_points:
+            for name, *_ in file.entry_points:
                 found.setdefault(name, set()).add("")
             for name in file.scripts:
                 found.setdefault(posixpath.basename(name), set()).add("")
