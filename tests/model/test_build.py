@@ -620,7 +620,9 @@ CONDITIONS = [
     ("TRUE OR FALSE AND FALSE", False), ("TRUE OR ( FALSE AND FALSE )", True),
     ("a STREQUAL a", None), ("UNKNOWN STREQUAL a", None), ("( TRUE", None), ("1 LESS 2", True),
     ("1 GREATER_EQUAL 2", False), ("1.10 VERSION_GREATER 1.9", True), ("1.0 VERSION_EQUAL 1", True),
-    ("3 EQUAL x", False), ("POLICY CMP0054", True), ("TARGET t", None), ("COMMAND message", True),
+    ("3 EQUAL x", False), ("POLICY CMP0022", True), ("TARGET t", None), ("COMMAND message", True),
+    # Only newer versions of CMake have these.
+    ("POLICY CMP0054", None), ("COMMAND add_link_options", None),
     ("COMMAND nothing", None), ("DEFINED UNKNOWN", None), ("IS_ABSOLUTE /x", True), ("", False),
 ]  # fmt: skip
 
