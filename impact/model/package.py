@@ -965,16 +965,18 @@ class _Join:
 
     def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
-        none does, or that is installed and only tests compile, is taken alone; one that is only a part of another, as
-        that one includes it."""
+        none does is taken alone, and one that is only a part of another as that one includes it."""
         found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
+        besides: dict[str, set[tuple[str, ...]]] = {p: set() for p in found}
         own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
         for source, (role, *_) in roles.items():
             if is_header(source):
                 continue
             for path, before in self.met(source, own):
-                if role == roles[path][0]:
-                    found[path].add(tuple(sorted(own[path] | before)))
+                # An installed header may be compiled by nothing but programs that are called tests.
+                (found if role == roles[path][0] else besides)[path].add(tuple(sorted(own[path] | before)))
+        for path, sets in found.items():
+            sets.update(besides[path] if not sets else ())
         parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
         for header in self.outermost(roles) if parts else ():
             for path, before in self.met(header, parts):
