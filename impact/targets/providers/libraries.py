@@ -104,9 +104,10 @@ class SystemLibraries:
             return stray
         providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
         nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
-        return next((library for library in nearest if self._has(library, header)), "")
+        return next((library for library in nearest if self.has(library, header)), "")
 
-    def _has(self, library: str, header: str) -> bool:
+    def has(self, library: str, header: str) -> bool:
+        """Whether some version of a library has a header."""
         known = self._headers(library)
         return any(path in known for path in _written(header, self._roots(library)))
 
