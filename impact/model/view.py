@@ -849,18 +849,23 @@ class TargetView:
         return _without_broad(found)
 
     def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
-        """Without the keys that bring the library of a header on other platforms than this one."""
+        """Without the keys that bring the library of a header on other platforms than this one: whose packages were
+        read, and neither have the header nor bring it along."""
         libraries = system_libraries()
-        own = libraries.of_header(path)
-        if not own or not all(libraries.around(own, self.target.platform)):
+        first = next((p.package for p in found if p.kind == "system"), "")
+        own = libraries.of_package(first) if first else ""
+        if not own or libraries.of_header(path) != own or not all(libraries.around(own, self.target.platform)):
             return found
         bringing = self.apt.bringing(libraries.packages(own))
-        kept = [
+        return [
             p
             for p in found
-            if p.kind != "system" or p.package in bringing or not bringing.isdisjoint(self.debian(p.name))
+            if p.kind != "system"
+            or p.package in bringing
+            or not bringing.isdisjoint(names := self.debian(p.name) | {p.package})
+            or not all(of := [libraries.of_package(name) for name in names])
+            or any(libraries.has(library, path) for library in of)
         ]
-        return kept if any(p.kind == "system" for p in kept) else found
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""

@@ -104,9 +104,10 @@ class SystemLibraries:
             return stray
         providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
         nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
-        return next((library for library in nearest if self._has(library, header)), "")
+        return next((library for library in nearest if self.has(library, header)), "")
 
-    def _has(self, library: str, header: str) -> bool:
+    def has(self, library: str, header: str) -> bool:
+        """Whether some version of a library has a header."""
         known = self._headers(library)
         return any(path in known for path in _written(header, self._roots(library)))
 
@@ -119,17 +120,19 @@ class SystemLibraries:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
         neither has it, one of them was not read, or it is of no library that was."""
         library = self.of_header(header)
-        versions = self.around(library, platform) if library else ()
-        known = self._file.included(library, 0) if versions and all(versions) else None
+        before, after = self.around(library, platform) if library else ("", "")
+        known = self._file.included(library, 0) if before and after else None
+        if known is None:
+            return None
         found: dict[str, None] = {}
         there = False
-        for version in versions if known is not None else ():
+        for version in (before, after):
             for path in _written(header, self._roots(library)):
                 if (written := known.written(path, version)) is not None:
                     found.update((known.answer(one, path, version), None) for one in written)
                     there = True
                     break
-        return Including(library, versions[0], tuple(found)) if there else None
+        return Including(library, before, tuple(found)) if there else None
 
     @cached_method
     def _roots(self, library: str) -> tuple[str, ...]:
