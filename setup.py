@@ -12,6 +12,7 @@ setup(
         "rosimpact.impact.targets": ["data/*"],
         "rosimpact.impact.rules": ["precision.json"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
+        "rosimpact.impact.model.cmake": ["*.toml"],
         "rosimpact.impact.model.flow": ["*.toml"],
         "rosimpact.impact.report.graph": ["assets/*"],
         "rosimpact.corpus": ["py.typed", "labels.jsonl", "GUIDE.md"],

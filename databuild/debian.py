@@ -1,11 +1,11 @@
-"""Builds data/changes_debian.json and uses_debian.json: what versions of platform libraries no longer have, or take.
+"""Builds data/libraries.sqlite, changes_debian.json and uses_debian.json: what versions of system libraries have, and
+what they no longer have, or take.
 
-    python -P -m rosimpact.databuild.debian FOLDER --clones CLONES --output DATA
+    python -P -m rosimpact.databuild.debian WORK --suite bullseye=APT_CONF --suite bookworm=APT_CONF ... --clones CLONES
 
-FOLDER holds a folder for each Debian release, with the development packages of the libraries as `apt-get download
-PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an installed package, and those of
-consecutive versions compared. CLONES holds git clones (`OWNER+NAME`); versions before the first packaged one are read
-at their release tags there, into changes_library_tags.json. Only names and versions are kept.
+Libraries are read as libraries.py has it, written by library_file.py, and consecutive versions compared. CLONES holds
+git clones (`OWNER+NAME`); versions before the first packaged one are read at their release tags there, into
+changes_library_tags.json. Only names and versions are kept.
 
 A header is gone when no package of that release, or of a later one, has it. A name is gone when its last part is not
 even a word in any header of its library in that version or a later one: then no macro, alias, specialisation or
@@ -17,26 +17,22 @@ from __future__ import annotations
 import argparse
 import json
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from itertools import pairwise
-from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
 from ..edges.files import write_file
-from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, offered
 from ..impact.targets.changes import all_rows, all_uses
 from ..impact.targets.platform import CODENAMES
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import shipped
 from ..impact.targets.version import at_least, parts
-from . import library_tags
+from . import library_file, library_tags
 from .includes import platform_versions
-from .surface.unpacked_deb import members
+from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, count_uses, upstream
 
 
 class Library(NamedTuple):
@@ -116,24 +112,11 @@ _LIBAV = _library(
     r"av(?:codec|format|device|io|filter)?_\w+|AV_[A-Z]\w+|AVCodec\w+|AVFormat\w+|AVPicture\w*|AVFrame\w+|sws_\w+",
 )
 """What no Debian release of today packages."""
-# What nobody outside of a library is meant to include or to call; and libraries of Boost that are made for others.
-_PARTS = (
-    r"_?details?|internals?|_?impl|_?private|priv|aux_?|preprocessed|hal|cuda|gpu|3rdparty|third_party|src|arch|compiler"
-    r"|mpl|fusion|spirit2?|phoenix|proto|typeof|hana|yap|metaparse|vmd|preprocessor|msm|wave|compute|qvm|type_traits"
-    r"|contract|intrusive|move|mysql|redis|cobalt|beast|outcome|leaf|mp11|hof|describe|safe_numerics|gil|histogram|icl"
-    r"|log/support|(?:test|asio)/traits|regex/v[45]|dll|stl_interfaces|unit_test|charconv|mqtt5|decimal|callable_traits"
-    r"|machine|winapi|interfaces?\d+|v\d+|boost(?:/|::)(?:geometry|numeric|math|parameter|config|json|url|stacktrace|hash2)"
-)
-_INNER = re.compile(
-    rf"(?:^|[/_])(?:{_PARTS}|win32|wince|win32u|windows|macos|sunos|vx|cygwin|posix|aix)(?:[/_.]|$)", re.IGNORECASE
-)
-_INNER_NAME = re.compile(rf"(?:^|::)(?:_\w+|\w+_detail|{_PARTS})(?:::|$)", re.IGNORECASE)
 _GUARD = re.compile(r"_(?:H|HH|HPP|HXX|H_|HPP_|INCLUDED|INC|EXPORTS?|API|DECL)_*\Z|\w*(?:EXPORT|IMPORT|_INLINE)\w*\Z")
 _KINDS = CLASSES | {"enum", "alias", "function", "enumerator", "macro", "variable"}
-_WORD = re.compile(r"[A-Za-z_]\w*")
-_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
-_DEB = re.compile(r"(?P<package>[^_]+)_(?P<version>[^_]+)_[^_]+\.deb\Z")
 _ORDER = {name: place for place, name in enumerate(name.split()[1] for name in CODENAMES.values())}
+Suites = Mapping[str, Mapping[str, LibraryFacts]]
+"""Debian releases, oldest first, with their libraries by source package."""
 _SHORTEST = 6
 """Letters of the last part of a name. A shorter one is a word of everyday use, and may be anybody's."""
 
@@ -148,41 +131,19 @@ class Version(NamedTuple):
     words: frozenset[str]
 
 
-def upstream(version: str) -> str:
-    """The version of the library itself: `7:5.1.9-0+deb12u1` is 5.1.9, `2.1.0+really2.1.0+dfsg-1` is 2.1.0."""
-    version = re.split(r"\+really|\.really\.", version.rpartition(":")[2])[-1]
-    found = re.match(r"\d+(?:\.\d+)*", version)
-    return found.group() if found else version
-
-
-def read_library(library: Library, folder: Path) -> Version | None:
-    """A library in the folder of one release; None when it has no package there. Raises DebError and OSError."""
-    texts: dict[str, bytes] = {}
-    number = ""
-    for file in sorted(folder.glob("*.deb")):
-        told = _DEB.match(file.name)
-        if told is None or not library.packages.match(told["package"]):
-            continue
-        # Of a library that a release has twice, the newer one counts.
-        if number and parts(upstream(told["version"])) > parts(number) and told["package"].startswith("libboost"):
-            texts.clear()
-        number = max(number, upstream(told["version"].replace("%3a", ":")), key=parts)
-        for path, member in members(file).items():
-            found = (
-                library.headers.match(path.removeprefix("usr/include/")) if path.startswith("usr/include/") else None
-            )
-            if found is not None:
-                texts[found["path"]] = member.data
-    if not number:
-        return None
-    words = frozenset(
-        word for data in texts.values() for word in _WORD.findall(_COMMENT.sub(" ", data.decode("utf-8", "replace")))
-    )
-    surfaces = {
-        path: HeaderSurface(()) if _INNER.search(path) else surface_cpp.extract(data)
-        for path, data in sorted(texts.items())
-    }
-    return Version(folder.name, number, surfaces, words)
+def read_library(library: Library, facts: LibraryFacts, release: str, texts: Texts) -> Version | None:
+    """A library in one release, of what was read of the source package; None when that has none of its headers."""
+    headers: dict[str, HeaderSurface] = {}
+    words: set[str] = set()
+    for header in facts.headers:
+        ways = (library.headers.match(f"{root}{header.path}") for root in ("", *(f"{one}/" for one in facts.roots)))
+        told = next(filter(None, ways), None)
+        text = texts.get(header.sha) if told is not None else None
+        if told is not None and text is not None and not text.refuses:
+            path = told["path"]
+            headers[path] = HeaderSurface(()) if INNER.search(path) else text.surface
+            words.update(text.words)
+    return Version(release, upstream(facts.version), headers, frozenset(words)) if headers else None
 
 
 class Lost(NamedTuple):
@@ -236,7 +197,7 @@ def lost(library: Library, versions: Sequence[Version], steps: int | None = None
         headers = {
             path: _new_place(before, now, path)
             for path in before.headers
-            if not _INNER.search(path) and path not in rest.headers
+            if not INNER.search(path) and path not in rest.headers
         }
         names = {
             one.name: _successor(one, there)
@@ -264,7 +225,7 @@ def _told(library: Library, one: Entity) -> bool:
         and not last.startswith("_")
         and not last.endswith("_")
         and library.names.match(one.name) is not None
-        and _INNER_NAME.search(one.name) is None
+        and INNER_NAME.search(one.name) is None
         and not (one.kind == "macro" and _GUARD.search(one.name))
     )
 
@@ -329,7 +290,7 @@ def _functions(library: Library, version: Version) -> dict[str, list[Entity]]:
         scope, _, last = one.name.rpartition("::")
         if one.kind != "function" or not scope or scope in classes or not last.isidentifier() or "<" in one.name:
             continue
-        if library.names.match(one.name) and not _INNER_NAME.search(one.name) and len(last) >= _SHORTEST:
+        if library.names.match(one.name) and not INNER_NAME.search(one.name) and len(last) >= _SHORTEST:
             found[one.name].append(one)
     return found
 
@@ -342,10 +303,15 @@ def _tails(name: str) -> Iterator[str]:
 
 
 def groups(
-    library: Library, versions: Sequence[Version], known: Callable[[str, str], bool], steps: int | None = None
+    library: Library,
+    versions: Sequence[Version],
+    known: Callable[[str, str], bool],
+    steps: int | None = None,
+    elsewhere: Callable[[str, str, str], bool] = lambda kind, name, release: False,
 ) -> Iterator[tuple[str, dict]]:
     """Groups of rows as in data/changes.json and data/uses_libraries.json, with which of both it is. known: whether a
-    kind and name are told elsewhere already. steps: as lost() has it."""
+    kind and name are told elsewhere already. steps: as lost() has it. elsewhere: whether any library has such a thing
+    in a release or a later one."""
     for step in lost(library, versions, steps):
         old, new = step.before, step.now
         where = (
@@ -361,7 +327,11 @@ def groups(
             "removed_in": new.number,
         }
         for kind, names in (("header-removed", step.headers), ("api-removed", step.names)):
-            kept = {name: now for name, now in sorted(names.items()) if not known(kind, name)}
+            kept = {
+                name: instead
+                for name, instead in sorted(names.items())
+                if not known(kind, name) and not elsewhere(kind, name, new.release)
+            }
             if kept:
                 yield "changes", {"kind": kind, **shared, "names": kept}
         uses = {
@@ -405,17 +375,11 @@ def _of_ros_packages() -> frozenset[str]:
     return frozenset(found)
 
 
-def _packaged(folder: Path, library: Library) -> list[Version]:
-    read = (read_library(library, release) for release in sorted(folder.iterdir()) if release.is_dir())
-    known = [version for version in read if version is not None]
-    return sorted(known, key=lambda version: (parts(version.number), _ORDER.get(version.release, len(_ORDER))))
-
-
 def _tagged(clones: Path, library: Library, packaged: Sequence[Version]) -> tuple[list[Version], int]:
     """The versions at release tags, then the packaged ones; and how many steps lead to the first packaged one, or where
     there is none, to the last one that a platform has."""
     platforms = platform_versions(library.name)
-    tagged = [Version("", *one) for one in library_tags.read(clones, library.name, platforms, _INNER)]
+    tagged = [Version("", *one) for one in library_tags.read(clones, library.name, platforms, INNER)]
     if not tagged:
         return [], 0
     last = packaged[0].number if packaged else max(platforms, key=parts)
@@ -423,16 +387,98 @@ def _tagged(clones: Path, library: Library, packaged: Sequence[Version]) -> tupl
     return [*tagged, *packaged], steps
 
 
-_Groups = list[tuple[str, dict]]
+def packaged(library: Library, suites: Suites, texts: Texts) -> list[Version]:
+    """The versions of a library that releases have, oldest first."""
+    found = []
+    for suite, libraries in suites.items():
+        for facts in libraries.values():
+            if any(library.packages.match(name) for name in facts.packages):
+                version = read_library(library, facts, suite, texts)
+                found += [version] if version is not None else []
+    return sorted(found, key=lambda version: (parts(version.number), _ORDER.get(version.release, len(_ORDER))))
 
 
-def _one(folder: Path, clones: Path | None, known: Callable[[str, str], bool], library: Library) -> list[_Groups]:
-    """Groups by Debian's packages, and those by tags."""
-    packaged = _packaged(folder, library)
-    versions, steps = _tagged(clones, library, packaged) if clones is not None else ([], 0)
-    # Macros that only old versions have may declare more than is read, so that no numbers of arguments are told.
-    early = [one for one in groups(library, versions, known, steps) if one[0] == "changes"] if steps else []
-    return [list(groups(library, packaged, known)), early]
+# -- libraries of which nothing is told by hand ------------------------------------------------------------------------
+
+_OWN = 0.95
+_FEWEST = 8
+_KEPT = 0.6
+_USED = 30
+"""Shares of the names with one beginning that one library has for these names to be its own, and of headers that the
+next version has where what it lacks is told; how many such names there have to be; and how many manifests name the
+library, since each row costs all checks a little."""
+
+
+def start_of(name: str) -> str:
+    """The outermost namespace or class of a name: `cv::` of `cv::Mat`; empty for bare names, which macros often make of
+    several words."""
+    head, colons, _ = name.partition("::")
+    return f"{head}::" if colons else ""
+
+
+def other_libraries(suites: Suites, texts: Texts) -> list[Library]:
+    """The libraries besides LIBRARIES, with the names that are theirs alone among all that were read."""
+    counts: dict[str, Counter[str]] = defaultdict(Counter)
+    packages: dict[str, set[str]] = defaultdict(set)
+    read: set[tuple[str, str]] = set()
+    for libraries in suites.values():
+        for name, facts in libraries.items():
+            packages[name].update(facts.packages)
+            fresh = {(name, header.sha) for header in facts.headers} - read
+            read |= fresh
+            for _, sha in fresh:
+                for one in texts.get(sha).surface.entities:
+                    counts[start_of(one.name) if one.kind in _KINDS else ""][name] += 1
+    del counts[""]
+    own: dict[str, list[str]] = defaultdict(list)
+    for start, each in counts.items():
+        (library, most), *_ = each.most_common(1)
+        if most >= _FEWEST and most >= _OWN * each.total():
+            own[library].append(re.escape(start))
+    by_hand = [one.packages for one in LIBRARIES]
+    return [
+        Library(
+            name,
+            re.compile(rf"(?:{'|'.join(map(re.escape, sorted(packages[name])))})\Z"),
+            re.compile(r"(?P<path>.+/.+)\Z"),
+            re.compile(rf"(?:{'|'.join(sorted(own[name])) or '(?!)'})\w.*\Z"),
+        )
+        for name in sorted(packages)
+        if not any(pattern.match(package) for pattern in by_hand for package in packages[name])
+    ]
+
+
+class Elsewhere:
+    """What any library has in a release or a later one."""
+
+    def __init__(self, suites: Suites, texts: Texts):
+        self._words: dict[str, set[str]] = {}
+        self._paths: dict[str, set[str]] = {}
+        words: set[str] = set()
+        paths: set[str] = set()
+        refused: dict[str, bool] = {}
+        for suite, libraries in reversed(suites.items()):
+            for header in (header for facts in libraries.values() for header in facts.headers):
+                if header.sha not in refused:
+                    text = texts.get(header.sha)
+                    words.update(text.words)
+                    refused[header.sha] = bool(text.refuses)
+                paths.update(() if refused[header.sha] else {header.path})
+            self._words[suite], self._paths[suite] = set(words), set(paths)
+
+    def has(self, kind: str, name: str, release: str) -> bool:
+        """Whether a header of any library is, or has, that."""
+        if kind.startswith("header"):
+            return name in self._paths.get(release, ())
+        return name.rpartition("::")[2] in self._words.get(release, ())
+
+
+def _shrunk(versions: Sequence[Version]) -> bool:
+    """Whether some version has far fewer headers than the one before: they may be in a package that was not read."""
+    return any(
+        sum(path in now.headers for path in before.headers) < _KEPT * len(before.headers)
+        for before, now in pairwise(versions)
+    )
 
 
 def write(file: Path, key: str, rows: Iterable[dict]) -> None:
@@ -442,35 +488,52 @@ def write(file: Path, key: str, rows: Iterable[dict]) -> None:
     write_file(file, f'{{"{key}": [\n{text}\n]{more}}}\n'.encode())
 
 
+def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> None:
+    """Writes the tables of what went."""
+    reviewed = told_elsewhere()
+    everywhere = Elsewhere(suites, texts)
+    changes: list[dict] = []
+    uses: list[dict] = []
+    early: list[dict] = []
+    for library in (*LIBRARIES, *((_LIBAV,) if clones is not None else ())):
+        versions = packaged(library, suites, texts)
+        for key, group in groups(library, versions, reviewed, elsewhere=everywhere.has):
+            (changes if key == "changes" else uses).append(group)
+        tagged, steps = _tagged(clones, library, versions) if clones is not None else ([], 0)
+        # Macros that only old versions have may declare more than is read, so that no numbers of arguments are told.
+        early += [group for key, group in groups(library, tagged, reviewed, steps) if key == "changes" and steps]
+    uses_of = count_uses()
+    for library in other_libraries(suites, texts):
+        if sum(count for name, count in uses_of.items() if library.packages.match(name)) < _USED:
+            continue
+        versions = packaged(library, suites, texts)
+        if not _shrunk(versions):
+            told = groups(library, versions, reviewed, elsewhere=everywhere.has)
+            changes += [group for key, group in told if key == "changes"]
+    write(output / "changes_debian.json", "changes", changes)
+    write(output / "uses_debian.json", "uses", uses)
+    if clones is not None:
+        write(output / "changes_library_tags.json", "changes", early)
+
+
 def main(arguments: list[str] | None = None) -> None:
-    """Writes both tables."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("folder", type=Path)
+    """The command line described at the top."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("work", type=Path, help="folder that keeps what was read")
+    parser.add_argument("--suite", action="append", default=[], metavar="NAME=APT_CONF", help="read it first")
     parser.add_argument("--clones", type=Path, help="read older versions at the tags of the git clones in this folder")
     parser.add_argument("--output", type=Path, default=DATA)
-    parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args(arguments)
-    if not any(asked.folder.glob("*/*.deb")):
-        parser.error(f"{asked.folder} has no folder with Debian packages; `apt-get download PACKAGE=VERSION` into one")
-    known = told_elsewhere()
-    libraries = LIBRARIES if asked.clones is None else (*LIBRARIES, _LIBAV)
-    with ProcessPoolExecutor(asked.jobs, mp_context=get_context("fork"), initializer=_keep, initargs=(known,)) as pool:
-        found = list(pool.map(partial(_work, asked.folder, asked.clones), libraries))
-    for place, key, name in ((0, "changes", "debian"), (0, "uses", "debian"), (1, "changes", "library_tags")):
-        if place == 0 or asked.clones is not None:
-            rows = [group for one in found for kind, group in one[place] if kind == key]
-            write(asked.output / f"{key}_{name}.json", key, rows)
-
-
-_KNOWN: list[Callable[[str, str], bool]] = []
-
-
-def _keep(known: Callable[[str, str], bool]) -> None:
-    _KNOWN[:] = [known]
-
-
-def _work(folder: Path, clones: Path | None, library: Library) -> list[_Groups]:
-    return _one(folder, clones, _KNOWN[0], library)
+    run = Run(asked.work, lambda text: print(text, flush=True))
+    for item in asked.suite:
+        name, _, configuration = item.partition("=")
+        run.read_suite(name, Path(configuration).absolute(), [one.packages for one in LIBRARIES])
+    names = sorted(run.suites(), key=lambda name: _ORDER.get(name, len(_ORDER)))
+    suites = {name: {facts.library: facts for facts in run.facts(name)} for name in names}
+    if not suites:
+        parser.error(f"{asked.work}: nothing was read yet; give a --suite for each Debian release")
+    print(library_file.write(asked.output / "libraries.sqlite", suites, run.texts), flush=True)
+    derive(suites, run.texts, asked.clones, asked.output)
 
 
 if __name__ == "__main__":

@@ -79,6 +79,11 @@ _SKIP = re.compile(rb"usr/share/(?:doc|gir-1\.0|perl5|icons|javascript|nodejs|ca
 _ROS_SOURCE = re.compile(r"(?:ros|ament|ros2|rosidl)-|ament_|catkin$")
 
 
+def of_ros(source: str) -> bool:
+    """Whether a Debian source package is of ROS itself."""
+    return _ROS_SOURCE.match(source) is not None
+
+
 def lines_of(path: Path) -> Iterator[bytes]:
     """Lines of an index however apt compressed it, through apt's own helper."""
     with subprocess.Popen(["/usr/lib/apt/apt-helper", "cat-file", str(path)], stdout=subprocess.PIPE) as process:
@@ -103,7 +108,7 @@ def read_suite(platform: str, lists: Path) -> Suite:
             essential.add(name)
         origin = fields.get("Source", name).partition(" ")[0]
         source[name] = sys.intern(re.sub(r"-?[\d.]+$", "", origin.removesuffix("-defaults")))
-        if _ROS_SOURCE.match(origin):
+        if of_ros(origin):
             ros.add(name)
     real = dependencies_of(lists)
     return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
@@ -361,9 +366,10 @@ _COMPILER_PACKAGE = re.compile(
 )
 
 
-def _compiler_packages(suite: Suite) -> frozenset[str]:
-    """Debian packages behind the compiler and the C library: build-essential's headers, which everybody has."""
-    return frozenset(name for name in suite.depends if _COMPILER_PACKAGE.fullmatch(name))
+def is_of_compiler(package: str) -> bool:
+    """Whether a Debian package is behind the compiler and the C library: build-essential's headers, which everybody
+    has."""
+    return _COMPILER_PACKAGE.fullmatch(package) is not None
 
 
 def _same_python(names: Iterable[str]) -> set[str]:
@@ -393,7 +399,7 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
     named = frozenset(package for packages in keys.debian.values() for package in packages)
     tables = [_Names({}, {}) for _ in range(5)]
     header, cmake, pkgconfig, module, program = tables
-    compiler = frozenset().union(*(_compiler_packages(suite) for suite in suites))
+    compiler = frozenset(name for suite in suites for name in suite.depends if is_of_compiler(name))
     essential = frozenset().union(*(suite.essential for suite in suites))
     direct: set[str] = set()
 

@@ -40,11 +40,20 @@ tests is small and forks fast; then those that take long, so that with -n all pr
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Sorts files by _FIRST; within a file nothing moves."""
 
-    def find_rank(item: pytest.Item) -> int:
-        path = item.path.relative_to(Path(__file__).parent).as_posix()
+    @functools.cache
+    def find_rank(file: Path) -> int:
+        path = file.relative_to(Path(__file__).parent).as_posix()
         return next((rank for rank, start in enumerate(_FIRST) if path.startswith(start)), len(_FIRST))
 
-    items.sort(key=find_rank)
+    items.sort(key=lambda item: find_rank(item.path))
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Collects tests without looking for garbage, of which there is next to none: a quarter of the time it takes."""
+    gc.disable()
+    yield
+    gc.enable()
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
@@ -56,6 +65,15 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         ctypes.CDLL(None).malloc_trim(0)  # 130 MB of what was only needed to collect, which every fork would take along
     gc.freeze()
     gc.set_threshold(200_000, 20, 100)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """With -n auto one process more than there are cores: some tests wait for a time-out or for a process that they
+    have started, and leave their core without work for a seventh of the time."""
+    from rosimpact.edges import processes
+
+    return processes.cores() + 1
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -339,7 +339,7 @@ class _Surface:
             file = files.get(f"{self.prefix}{name}")
             if file is None:
                 continue
-            for entry, _, _ in file.entry_points:
+            for entry, *_ in file.entry_points:
                 yield InstalledProgram(entry, place, "entry point")
             for script in file.scripts:
                 yield InstalledProgram(posixpath.basename(script), place, "script")

@@ -53,6 +53,11 @@ class DebFile(NamedTuple):
 def members(path: Path) -> dict[str, DebFile]:
     """The regular files of a package by their path from the root (`usr/include/a.h`); links within the package stand
     for what they lead to. Raises DebError, and OSError where it cannot be read."""
+    return members_and_links(path)[0]
+
+
+def members_and_links(path: Path) -> tuple[dict[str, DebFile], dict[str, str]]:
+    """The same, and all links with what they lead to, be it in the package or not."""
     descriptor = open_regular(path)
     try:
         size = os.fstat(descriptor).st_size
@@ -67,7 +72,7 @@ def members(path: Path) -> dict[str, DebFile]:
     for link, to in links.items():
         if to in files:
             files.setdefault(link, files[to])
-    return files
+    return files, links
 
 
 class _Header(tarfile.TarInfo):

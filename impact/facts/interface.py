@@ -48,7 +48,8 @@ class Interface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A definition. kind is msg, srv, action or idl (then `name` and `module` come from the text).
 
     Types of an IDL file are given in the words of .msg files (`geometry_msgs/msg/Point`, `float64`, `string<=10`), so
-    that both compare. A further struct of an IDL file is a section of its own name.
+    that both compare. A further struct of an IDL file is a section of its own name. unread: line and text of what is
+    neither a field nor a constant; each is a problem too.
     """
 
     kind: str
@@ -56,6 +57,7 @@ class Interface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     name: str = ""
     problems: tuple[Problem, ...] = ()
     module: str = ""
+    unread: tuple[tuple[int, str], ...] = ()
 
 
 PRIMITIVES = frozenset({
@@ -102,6 +104,7 @@ def _ros(text: str, kind: str) -> Interface:
     fields: list[Field] = []
     constants: list[Constant] = []
     problems: list[Problem] = []
+    unread: list[tuple[int, str]] = []
     above: list[str] = []
     annotations: list[str] = []
     for number, raw in enumerate(text.split("\n"), 1):
@@ -135,6 +138,7 @@ def _ros(text: str, kind: str) -> Interface:
         found = DECLARATION.match(line)
         if found is None:
             problems.append(Problem(number, f"`{_shortened(line)}` is neither a field nor a constant"))
+            unread.append((number, line))
             above.clear()
             annotations.clear()
             continue
@@ -162,7 +166,7 @@ def _ros(text: str, kind: str) -> Interface:
         last = text.count("\n") + (0 if text.endswith("\n") else 1)
         problems.append(Problem(max(last, 1), f"has no `---` before its {' and '.join(missing)}"))
         sections.extend(Section(name, (), ()) for name in missing)
-    return Interface(kind, tuple(sections), "", tuple(problems))
+    return Interface(kind, tuple(sections), "", tuple(problems), unread=tuple(unread))
 
 
 def _shortened(text: str) -> str:

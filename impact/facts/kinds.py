@@ -13,6 +13,7 @@ import msgspec
 from ...edges.limits import limits, limits_stamp, size_text
 from ..source_keys import source_key
 from .allow import allows
+from .distros import DistroFile, find_distros
 from .place import Allow, Problem
 
 T = TypeVar("T")
@@ -21,11 +22,12 @@ T = TypeVar("T")
 class FileFacts(msgspec.Struct, Generic[T], frozen=True, array_like=True, gc=False):
     """Everything one file tells. kind: as extracted, so `script` has become `python` or `shell`, or stays where it is
     neither. facts: Manifest, CMakeFile, Interface, CppFile, PythonFile, ReferenceFile or SetupFile, None when
-    the kind has none."""
+    the kind has none. distros: folders of distros that it names, see distros.py."""
 
     kind: str
     facts: T
     allows: tuple[Allow, ...] = ()
+    distros: DistroFile | None = None
 
 
 _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
@@ -48,13 +50,14 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
     ("colcon", "ColconFile",
      ("colcon_cmake", "colcon_setup_py", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings")),
+    ("distros", "ContainerFile", ("dockerfile", "ci")),
     ("searches", "SearchedCpp", ("searched_cpp",)),
     ("searches", "SearchedText", ("searched_text",)),
     ("searches", "DeclaredCpp", ("declared_cpp",)),
 )  # fmt: skip
 EXTRACTORS = {kind: (module, struct) for module, struct, kinds in _READ_BY for kind in kinds}
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""
-WITH_KIND = frozenset({"colcon", "interface", "launch.flow", "launch.references", "parameters", "setup"})
+WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "parameters", "setup"})
 SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
@@ -88,6 +91,11 @@ BY_ENDING = {
 # Templates that configure_file() fills in; what they mention is mentioned all the same.
 TEMPLATES = {"cmake", "h", "hpp", "cpp", "cc", "launch", "urdf", "xacro", "world", "sdf", "sh", "bash"}
 VARIANT = re.compile(r"package[._-][\w.-]*\.xml$|package\.xml[._-]?ros[\w.-]*$")
+DOCKERFILE = re.compile(r"(?:.*\.)?dockerfile(?:\..*)?\Z")
+CI = re.compile(
+    r"(?:^|/)(?:\.github/workflows/[^/]+|\.gitlab-ci|\.gitlab/[^/]+|\.travis|\.circleci/config|azure-pipelines)"
+    r"\.ya?ml\Z"
+)
 PLUGIN = re.compile(r"plugin|nodelet|_controllers?\.xml$|_layers?\.xml$")
 # Names without an ending that are prose, data or marks, never scripts.
 PROSE = frozenset({
@@ -103,7 +111,11 @@ def kind_of(path: str) -> str | None:
     known = BY_NAME.get(name)
     if known is not None:
         return known
+    if DOCKERFILE.match(name):
+        return "dockerfile"
     stem, _, ending = name.rpartition(".")
+    if ending in ("yaml", "yml") and CI.search(path):
+        return "ci"
     if not stem:
         return None if not ending or name[0] == "." or ending in PROSE else "script"
     if ending == "in":
@@ -142,6 +154,7 @@ _BUDGETS = {
     **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
     "colcon_cmake": "cmake",
     "shell": "script",
+    **dict.fromkeys(("dockerfile", "ci"), "script"),
     "gitignore": "script",
 }
 
@@ -190,7 +203,7 @@ def extract(kind: str, data: bytes) -> FileFacts[Any]:
         kind = "flow_python"
     if len(data) > largest(kind):
         return FileFacts(kind, empty(kind, Problem(1, f"larger than {size_text(largest(kind))}")))
-    return FileFacts(kind, _contained(kind, lambda: _extracted(kind, data)), allows(data))
+    return FileFacts(kind, _contained(kind, lambda: _extracted(kind, data)), allows(data), find_distros(data))
 
 
 def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:

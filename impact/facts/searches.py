@@ -88,7 +88,8 @@ _SPACE = re.compile(rb"namespace\s+(\w+)")
 # tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
 _OF_TF2 = (re.compile(rb"namespace\s+tf2\s*\{.*", re.DOTALL), re.compile(rb"template\s*<\s*>[^;{}]*"))
 _WORD = re.compile(rb"\w+")
-_FUNCTION = re.compile(rb"\b(\w{1,100}::[A-Za-z]\w{3,100})\s?(\([^;{}]{0,2000})\{")
+_FUNCTION = re.compile(rb"\b(\w{1,100}::[A-Za-z]\w{3,100})\s?(\([^;{}]{0,1000})\{")
+_AFTER_PARAMETERS = re.compile(rb"\s*(?:\Z|[a-z/&]|:(?!:)|->)")
 
 
 def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
@@ -97,9 +98,19 @@ def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
         _decoded({*_types(data), *_MESSAGE.findall(data)}),
         _decoded(_SPACE.findall(data)),
         _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
-        # In a condition or an argument, a parenthesis opens before.
-        _decoded(name for name, rest in _FUNCTION.findall(data) if rest.count(b"(") == rest.count(b")")),
+        _decoded(name for name, rest in _FUNCTION.findall(data) if _is_head(rest)),
     )
+
+
+def _is_head(text: bytes) -> bool:
+    """Whether parameters and what follows them up to a brace are those of a function that is defined: in a condition or
+    an argument a parenthesis opens before, or something else follows."""
+    depth = 0
+    for at, char in enumerate(text) if text.count(b"(") == text.count(b")") else ():
+        depth += (char == ord("(")) - (char == ord(")"))
+        if depth == 0:
+            return _AFTER_PARAMETERS.match(text, at + 1) is not None
+    return False
 
 
 def _types(data: bytes) -> Iterator[bytes]:

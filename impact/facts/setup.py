@@ -25,7 +25,8 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     entry_points: (name, module, line, function) of console_scripts. data_files: (destination, pattern, line), where
     glob(...) and os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as
-    written, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause each.
+    written, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause
+    each.
     python: of a setup.py, its imports and syntax like those of any Python file.
     script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
     are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).

@@ -61,8 +61,3 @@ class SpellingIndex:
             if one_edit(name, n)
         ]
         return near[0] if len(near) == 1 else None
-
-
-def nearest(name: str, names: SpellingIndex) -> str | None:
-    """See Names.nearest."""
-    return names.nearest(name)

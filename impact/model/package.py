@@ -5,6 +5,7 @@ The join is a pure function of facts, so its outcome is remembered by the conten
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
@@ -13,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
+from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
@@ -118,12 +121,14 @@ class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3."""
+    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3. plain:
+    the first line of the file says that `python` runs it, which Python 2 may be."""
 
     needs: int
     what: str
     at: At
     role: str
+    plain: bool = False
 
 
 class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -192,7 +197,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter.
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. shells: shell
+    scripts without an ending. interpreted: names of Python files that CMake code gives to an interpreter.
     """
 
     name: str
@@ -226,6 +232,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     mains: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
+    shells: tuple[str, ...] = ()
+    interpreted: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     # Declared dependencies that words of launch files, YAML or robot descriptions name.
     named: tuple[str, ...] = ()
@@ -249,6 +257,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     undefined: tuple[ImportUse, ...] = ()
     # Sources, each with another one that defines a function which it seems to use, and the function.
     own_calls: tuple[tuple[str, str, str], ...] = ()
+    # Files that name folders of distros.
+    distros: tuple[tuple[str, DistroFile], ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -395,6 +405,8 @@ class _Join:
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._known: dict[str, KnownFile] = {}
+        # Python files that run since a launch file or script of the package starts them, and what they import.
+        self.started: set[str] = set()
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
@@ -411,11 +423,11 @@ class _Join:
         )
 
     def digest(self) -> LinkedPackage:
-        allows, problems = [], []
-        aside = (
-            _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
-        )
+        allows, problems, distros = [], [], []
+        of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
+        interpreted: set[str] = set()
+        shells: list[str] = []
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
@@ -429,9 +441,13 @@ class _Join:
                 continue
             if file.allows:
                 allows.append((path, file.allows))
+            if file.distros is not None:
+                distros.append((path, file.distros))
             facts = file.facts
             if facts is None:
                 continue
+            if file.kind == "shell" and "." not in posixpath.basename(path):
+                shells.append(path)
             problems.extend((path, problem.line, problem.message) for problem in facts.problems)
             if isinstance(facts, CppFile):
                 self.cpp[path] = facts
@@ -448,6 +464,8 @@ class _Join:
                 interfaces.append(InterfaceFile(name, path, facts))
             elif isinstance(facts, SetupFile):
                 setup.append((path, facts))
+            elif isinstance(facts, CMakeFile):
+                interpreted.update(_scripts_run(facts))
             else:
                 data_words.append(getattr(facts, "words", ""))
                 if path.endswith((".yaml", ".yml")):
@@ -456,6 +474,9 @@ class _Join:
                     launches.append((path, kind))
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+        if self.build_type == "catkin":  # which starts programs from the source space too
+            own = (r for p, r in references if r.package == self.name and self.role(p) is None)
+            self.start_scripts(python, {r.name for r in own if r.kind == "executable"})
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
@@ -463,7 +484,7 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        from .python.undefined import list_undefined
+        from .python.undefined import list_undefined, list_undefined_functions
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -476,9 +497,7 @@ class _Join:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(
-                    r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or ("aside" if aside else "run")
-                )
+                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if of_tests else "run"))
                 for p, r in references
             ),
             names=tuple(names + python_names),
@@ -505,6 +524,8 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
+            shells=tuple(shells),
+            interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
             defined=tuple(sorted(self.defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
@@ -516,11 +537,15 @@ class _Join:
             cpp_api=tuple(self.cpp_api(roles)),
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
-                for p, i in list_undefined(python, modules, self.files, setup)
+                for p, i in (
+                    *list_undefined(python, modules, self.files),
+                    *list_undefined_functions(python, setup),
+                )
             ),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
+            distros=tuple(distros),
         )
 
     def answers(self, include: str, includer: str) -> str | None:
@@ -1068,16 +1093,37 @@ class _Join:
                         )
             syntax.extend(SyntaxUse(2, p.message, At(path, p.line), role) for p in facts.python2_only)
             if facts.needs is not None:
-                syntax.append(SyntaxUse(facts.needs[0], facts.needs[2], At(path, facts.needs[1]), role))
+                minor, line, what = facts.needs
+                plain = "python" in facts.interpreter and "python3" not in facts.interpreter
+                syntax.append(SyntaxUse(minor, what, At(path, line), role, plain))
         return imports, names, syntax, modules
 
     def python_role(self, path: str) -> str:
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
-        if _ASIDE_NAME.search(self.name):
-            return "aside"
-        return role_of_folder(inside) or ("run" if self.is_installed(path) else "aside")
+        return self.role(path) or ("run" if path in self.started or self.is_installed(path) else "aside")
+
+    def start_scripts(self, files: dict[str, PythonFile], names: Container[str]) -> None:
+        """Notes the scripts of these names, and the modules beside them that they import."""
+        waiting = [path for path in files if posixpath.basename(path) in names]
+        while waiting:
+            path = waiting.pop()
+            if path in files and path not in self.started:
+                self.started.add(path)
+                folder = posixpath.dirname(path)
+                waiting.extend(f"{folder}/{item.module.split('.')[0]}.py" for item in files[path].imports)
+
+    def role(self, path: str) -> str | None:
+        """As role_of_folder(). What only the name of the file or of the package calls an example is none where the
+        package installs the file, along with others of its things."""
+        inside = self.inside(path)
+        role = role_of_folder(inside)
+        by_folder = role_of_folder(f"{posixpath.dirname(inside)}/")
+        if role == "test" or by_folder is not None or (role is None and not _ASIDE_NAME.search(self.name)):
+            return role
+        installs = self.build_type == "ament_python" or bool(self.build.installs)
+        return None if installs and self.is_installed(path) else "aside"
 
     def is_installed(self, path: str) -> bool:
         """True for files that reach the installed package, as far as its rules tell."""
@@ -1099,6 +1145,13 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+def _scripts_run(facts: CMakeFile) -> Iterator[str]:
+    """Names of the Python files that CMake code mentions, where it starts a Python interpreter."""
+    texts = [[argument.text for argument in c.arguments] for c in facts.commands if "install" not in c.name]
+    if any(one == "COMMAND" and "python" in other.lower() for text in texts for one, other in itertools.pairwise(text)):
+        yield from (one.rpartition("/")[2] for text in texts for one in text if one.endswith(".py"))
 
 
 def _spoken(facts: CppFile) -> frozenset[str]:

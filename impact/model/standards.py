@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..targets.providers.library import default_standard, standard_year
@@ -47,6 +48,38 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
     return found
 
 
+def may_be_raised(view: TargetView, package: Package, names: Iterable[str]) -> bool:
+    """Whether one of these targets links, through others of the workspace as well, an imported target of which it is
+    not known what standard it asks for: CMake then compiles under that one."""
+    targets = {target.name: target for target in package.build.targets}
+    waiting, seen = list(names), set()
+    while waiting:
+        item = waiting.pop()
+        if item in seen:
+            continue
+        seen.add(item)
+        owner = package_of(item)
+        other = view.workspace.packages.get(owner) if item not in targets and owner != package.name else None
+        if item in targets:
+            waiting.extend([targets[item].alias_of, *(link.item for link in targets[item].links if link.how == "link")])
+        elif other is not None or owner == "catkin":
+            # Its libraries are handed on with what they link.
+            found = [other] if other is not None else _list_found(view, package)
+            waiting.extend(link.item for one in found for made in one.build.targets for link in made.links)
+        elif "::" in item and owner not in _ASKS_FOR_LITTLE and not view.offers.standard(owner):
+            return True
+    return False
+
+
+# Their imported targets ask for C++11 at most.
+_ASKS_FOR_LITTLE = frozenset({"Boost", "Eigen3", "Threads", "Qt5", "OpenMP", "yaml-cpp"})
+
+
+def _list_found(view: TargetView, package: Package) -> list[Package]:
+    names = (found.name for found in package.build.found if found.how == "catkin")
+    return [view.workspace.packages[name] for name in names if name in view.workspace.packages]
+
+
 def _find_raised(view: TargetView) -> int:
     """The standard that CMake raises a package's to, since the exported targets of rclcpp and others ask for it. Rclcpp
     does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
@@ -78,7 +111,7 @@ def find_failing_standard(
         return f"C++{have % 100:02d}" if have >= refused_from else None
     if max(have, _find_raised(view)) >= needs or not use.targets or use.role != "build":
         return None
-    if not view.certain(use.conditions):
+    if not view.certain(use.conditions) or may_be_raised(view, package, use.targets):
         return None
     return f"C++{have % 100:02d}"
 

@@ -24,6 +24,7 @@ from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import HeadersOfMachine, machine, machine_of
+from ..targets.providers.libraries import system_libraries
 from ..targets.providers.library import default_standard, include_roots, standard_year
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
@@ -81,6 +82,9 @@ _INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
 _WITH_INTERFACES = (
     "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
 )  # fmt: skip
+
+# How packages are called (REP 144).
+_PACKAGE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)+\Z")
 
 # Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
 _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boost", "rtt", "visp", "flann"})
@@ -559,6 +563,12 @@ class TargetView:
             environment = self._environments[ahead.name] = self._environment_on(ahead.target)
         return all_hold(conditions, environment) is not False
 
+    def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
+        """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
+        if found.state == "upcoming" and found.horizon is not None:
+            return self.active_on(found.horizon, conditions)
+        return found.is_missing
+
     def later_active(self, conditions: Iterable[Condition]) -> bool:
         """The same on the newest distro."""
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
@@ -828,7 +838,7 @@ class TargetView:
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
             return found
-        found = self._having(path, found)
+        found = self._having(path, self._bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
             if self.target.version(head) is not None or not found or head in self.workspace.packages:
@@ -837,6 +847,20 @@ class TargetView:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
         return _without_broad(found)
+
+    def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
+        """Without the keys that bring the library of a header on other platforms than this one."""
+        libraries = system_libraries()
+        own = libraries.of_header(path)
+        if not own or not all(libraries.around(own, self.target.platform)):
+            return found
+        bringing = self.apt.bringing(libraries.packages(own))
+        kept = [
+            p
+            for p in found
+            if p.kind != "system" or p.package in bringing or not bringing.isdisjoint(self.debian(p.name))
+        ]
+        return kept if any(p.kind == "system" for p in kept) else found
 
     def _having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
@@ -934,7 +958,7 @@ class TargetView:
                 found.name, ()
             ):
                 continue
-            providers = self.cmake(found.name)
+            providers = self.cmake(found.name) or self._by_form(found.name, found.how == "catkin")
             if not providers:
                 self.unresolved["cmake"].add(found.name)
                 continue
@@ -951,7 +975,8 @@ class TargetView:
                 certain,
                 found.required
                 or (found.how == "catkin" and not found.quiet)
-                or (found.name == "PkgConfig" and self._requires_modules(package)),
+                or (found.name == "PkgConfig" and self._requires_modules(package))
+                or self._is_called(package, found.name),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -968,7 +993,10 @@ class TargetView:
         for item in digest.imports:
             if not self.active(item.conditions):
                 continue
-            providers = self.module(item.module)
+            head, _, rest = item.module.partition(".")
+            providers = self.module(item.module) or (
+                self._by_form(head) if rest.partition(".")[0] in ("msg", "srv", "action") else ()
+            )
             if not providers:
                 self.unresolved["import"].add(item.module)
                 continue
@@ -982,7 +1010,9 @@ class TargetView:
             if not name and reference.kind == "plugin" and ".launch" in use.at.path:
                 # Nodelets are called `package/Class`.
                 name = reference.name.partition("/")[0] if "/" in reference.name else ""
-            if not name or name == package.name or "$" in name or not self.is_package(name):
+            if not name or name == package.name or "$" in name:
+                continue
+            if not self.is_package(name) and not (".launch" in use.at.path and _PACKAGE.match(name)):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
             yield Need(
@@ -995,11 +1025,33 @@ class TargetView:
                 not reference.conditional,
             )
 
+    def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
+        """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
+        another manifest of the workspace declares it. sure: its place tells that already."""
+        if not _PACKAGE.match(name) or not (sure or _INTERFACES.search(name) or name in self._declared_somewhere):
+            return ()
+        return (Provider("ros", name),)
+
+    @cached_property
+    def _declared_somewhere(self) -> frozenset[str]:
+        """What manifests of the workspace declare, besides keys."""
+        names = {dependency.name for package in self.workspace for dependency in package.manifest.dependencies}
+        return frozenset(name for name in names if not self.target.known_key(name))
+
     def _requires_modules(self, package: Package) -> bool:
         """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
         found the program."""
         asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
         return any(self.certain(f.conditions) for f in asked)
+
+    def _is_called(self, package: Package, name: str) -> bool:
+        """Whether a command that a package defines is called wherever it was looked for, found or not."""
+        commands = self.providers.commands.get(self.target.ros, {})
+        return any(
+            name in commands.get(use.name, "").split() and "_FOUND" not in " ".join(c.text for c in use.conditions)
+            for use in package.build.uses
+            if use.kind == "command" and self.certain(use.conditions)
+        )
 
     def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
@@ -1010,6 +1062,9 @@ class TargetView:
         if self.target.version(name) is not None and all(p.name != name for p in providers):
             # A library that is released as a package (fcl, octomap) writes its own.
             providers = (*providers, Provider("ros", name, "", False))
+        # Also where its module has more words in its name than the package (orocos-bfl of bfl).
+        words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.version(word) is not None)
+        providers = (*providers, *(Provider("ros", word, "", False) for word in words))
         testing = for_tests(found.conditions)
         yield Need(
             "pkg-config",

@@ -22,11 +22,13 @@ import msgspec
 from ...edges import processes
 from ...edges.limits import limits_stamp
 from ..facts.condition import Condition
+from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
 from ..source_keys import source_key
 from ..targets.surface.fields import snake
+from ..tree.paths import is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
@@ -148,6 +150,21 @@ class Workspace:
         """Whether a file or folder was not read, lies in a folder that was not, or holds such ones."""
         inside = itertools.accumulate(path.split("/"), "{}/{}".format)
         return path in self._around_unread or not self.unread.isdisjoint(inside)
+
+    @cached_property
+    def distro_scripts(self) -> dict[str, DistroFile]:
+        """Shell scripts outside of all packages that name folders of distros."""
+        scripts = _list_scripts(self.discovered, self.gathered)
+        self.gathered.preload(scripts)
+        found = ((path, self.gathered.facts(path).distros) for path in scripts)
+        return {path: distros for path, distros in found if distros is not None}
+
+    @cached_property
+    def containers(self) -> dict[str, ContainerFile]:
+        """The workspace's own Dockerfiles and CI files."""
+        paths = [path for path in self.gathered.paths("dockerfile", "ci") if not is_vendored(path)]
+        self.gathered.preload(paths)
+        return {path: self.gathered.facts(path).facts for path in paths}
 
     @cached_property
     def headers(self) -> dict[str, list[str]]:
@@ -406,8 +423,15 @@ def link(
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
+    scripts = [(path, gathered.ids[path]) for path in _list_scripts(discovered, gathered)]
+    linker.identity.update(repr(scripts).encode("utf-8", "backslashreplace"))
     identity = linker.identity.digest()
     return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread)
+
+
+def _list_scripts(discovered: Discovered, gathered: ExtractedFacts) -> list[str]:
+    """Shell scripts outside of all packages."""
+    return [path for path in gathered.paths("shell", "script") if discovered.owner(path) is None]
 
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:

@@ -20,9 +20,14 @@ def circular(view: TargetView, package: Package, name: str) -> bool:
 
 
 def name_to_declare(view: TargetView, need: Need) -> str | None:
-    """The name a person would put into the manifest for a need: the first provider that can be had on the target."""
+    """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
+    the package that is named by its form, wherever it comes from."""
     other = "python3-" if view.target.python_major == 2 else "python-"
     for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
         if provider.name and present(view, provider.name):
             return provider.name
-    return None
+    first = need.providers[0]
+    if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:
+        return None
+    meant = first.name == need.subject.partition(".")[0] and not view.target.other_generation(first.name)
+    return first.name if meant else None

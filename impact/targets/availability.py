@@ -18,6 +18,7 @@ from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_
 from .distro.known import known_distros
 from .evidence import evidence_of, of_offered
 from .evidence_record import Evidence
+from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER
 from .surface.fields import before, default_fields, there
@@ -40,6 +41,8 @@ _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
     "plugin": ("plugins", lambda build: (name for plugin in build.plugins for name in (plugin.name, plugin.type))),
 }
 _WITH_ALIKE = frozenset(("executable", "launch file", "plugin", "target"))
+_STARTED = frozenset(("executable", "launch file", "plugin"))
+"""Kinds whose names are misspelt where no version has them and the target's has one like them."""
 _STATES: dict[str, State] = {
     "removed": "removed",
     "moved": "removed",
@@ -134,18 +137,36 @@ class Availabilities:
                 return found
             if found.state != "unknown":
                 missing = missing or found
-        return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
+        return missing or self._reviewed(symbol) or self._of_library(symbol) or Availability(symbol, "unknown")
+
+    def _of_library(self, symbol: Symbol) -> Availability | None:
+        """What Debian's releases of a system library tell of a target that some of them export."""
+        target = self.target
+        if symbol.kind != "target" or not target.platform:
+            return None
+        found = system_libraries().target(symbol.name, target.platform, target.library)
+        if found is None or found.here is None:
+            return None
+        state: State = "present" if found.here else "removed" if found.lost else "not yet"
+        version = target.library(found.library) or found.version
+        return Availability(symbol, state, found.library, version, library=True)
 
     def on_horizon(self, symbol: Symbol) -> Availability:
-        """The same, and `upcoming` for what is there and is removed on the nearest horizon."""
+        """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for
+        platform libraries, and for names of CMake that are deprecated here already."""
         here = self.of(symbol)
         if here.state not in ("present", "deprecated"):
             return here
         for horizon, then in self._ahead:
             found = then.of(symbol)
-            if found.state == "removed" and (found.library or not horizon.platform):
+            if found.state == "removed" and (found.library or not horizon.platform or self._is_deprecated(here)):
                 return found.on(horizon)
         return here
+
+    def _is_deprecated(self, here: Availability) -> bool:
+        """Whether a reviewed row says that CMake warns of a name on the target."""
+        row = self._reviewed(here.symbol) if here.symbol.kind in ("command", "target", "variable") else None
+        return row is not None and row.state == "deprecated"
 
     @cached_property
     def _ahead(self) -> list[tuple[Horizon, Availabilities]]:
@@ -222,6 +243,9 @@ class Availabilities:
         offered = offer.get(side, name)
         if offered is None or not decides(offer, offered):
             has = offered is None and self._has(offer, side, name)
+            if offered is None and not has and offer.exact and side in _STARTED and (alike := _meant(offer, side, name)):
+                if all(one != _BUILT[side][0] for one, _ in offer.build.unknown):
+                    return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
             return Availability(symbol, "present" if has else "unknown", package, offer.version)
         state = _STATES[offered.state]
         sure = offered.sure
@@ -367,7 +391,7 @@ def _with_other(offer: PackageOffer, offered: Offered) -> Evidence:
     )
 
 
-_ALIKE = 0.75
+_ALIKE, _MISSPELT = 0.75, 0.85
 """How much of two names has to agree, as difflib measures it."""
 
 
@@ -375,3 +399,16 @@ def _alike(offer: PackageOffer, side: str, name: str) -> str:
     """What the target's version has that is called most alike; empty where nothing is."""
     close = difflib.get_close_matches(name, list(dict.fromkeys(_BUILT[side][1](offer.build))), 1, _ALIKE)
     return close[0] if close else ""
+
+
+def _meant(offer: PackageOffer, side: str, name: str) -> str:
+    """What the target's version has and a name is a misspelling of: only the last part of it differs, by little."""
+    alike = _alike(offer, side, name)
+    (head, tail), (other_head, other) = _split(name), _split(alike)
+    near = head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
+    return alike if near else ""
+
+
+def _split(name: str) -> tuple[str, str]:
+    at = max(name.rfind("/"), name.rfind(":")) + 1
+    return name[:at], name[at:]

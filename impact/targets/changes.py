@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 import msgspec
 
 from ..facts.usage import Pattern
+from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError
 from .target import ChangeInForce, Target
@@ -273,7 +274,8 @@ def version_of(package: str, library: bool, target: Target, derived: bool = Fals
     """Version of a released package, or of a platform library, on a target; None when it is not there or not known.
 
     derived: what is asked was read from Debian's packages of the library. ROS releases some of those itself (urdfdom,
-    ompl), under upstream's numbers and ahead of the platform's own.
+    ompl), under upstream's numbers and ahead of the platform's own. Where no table has the platform's version, that is
+    the oldest which Debian's releases allow.
     """
     if not library:
         return target.version(package)
@@ -281,7 +283,7 @@ def version_of(package: str, library: bool, target: Target, derived: bool = Fals
         return released
     if package == "python" and getattr(target, "python_major", 3) == 2:
         return "2.7"
-    return target.library(package)
+    return target.library(package) or (system_libraries().around(package, target.platform)[0] if derived else None)
 
 
 def _state(row: ChangeRow, version: str, target: Target, table: Providers) -> State | None:

@@ -1,6 +1,7 @@
 """Platforms: their names, spelled one way, and the Python they bring."""
 
 import re
+from collections.abc import Collection
 
 from .version import number_of
 
@@ -23,6 +24,25 @@ CODENAMES: dict[str, str] = {
 """Release number → codename. Sources: releases.ubuntu.com, debian.org/releases."""
 
 _KNOWN = {name.split()[1]: name for name in CODENAMES.values()}
+
+
+_FROZEN = (
+    *("ubuntu xenial", "debian stretch", "ubuntu bionic", "debian buster", "ubuntu focal", "debian bullseye"),
+    *("ubuntu jammy", "debian bookworm", "ubuntu noble", "debian trixie", "ubuntu resolute"),
+    *("debian forky", "debian sid"),
+)
+"""Platforms in the order in which their packages were frozen. Sources: releases.ubuntu.com, debian.org/releases."""
+
+
+def neighbours(platform: str, known: Collection[str]) -> tuple[str, str]:
+    """The platforms among those known that were frozen last before one and first after it, itself for one of them;
+    empty where there is none. Ubuntu takes what Debian has at the time, so that what both have and lack it does too."""
+    if platform not in _FROZEN:
+        return "", ""
+    place = _FROZEN.index(platform)
+    before = [one for one in _FROZEN[: place + 1] if one in known]
+    after = [one for one in _FROZEN[place:] if one in known]
+    return before[-1] if before else "", after[0] if after else ""
 
 
 def normal_platform(text: str) -> str:

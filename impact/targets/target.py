@@ -166,6 +166,10 @@ class Target(Protocol):
         """True when rosdep has, or had, a key of this name for any platform."""
         ...
 
+    def keys_instead(self, key: str) -> tuple[str, ...]:
+        """rosdep keys that install here what a key installs on other releases, best first."""
+        ...
+
     def has_rosdep_rules(self) -> bool:
         """True when rosdep knows the platform's operating system, so that a key without a rule cannot be installed."""
         ...

@@ -62,6 +62,18 @@ def test_what_a_file_declares(text, types, spaces, tf2):
     assert (found.types, found.spaces, found.tf2) == (types, spaces, tf2)
 
 
+@pytest.mark.parametrize(("text", "functions"), [
+    ("void Arm::raise(int by) { }\n", {"Arm::raise"}),
+    ("template<class T>\nint Arm::lower(T t) const noexcept\n{\n}\n", {"Arm::lower"}),
+    ("Arm::Arm() : a_(1), b_{2} { }\nArm::~Arm() { }\n", set()),
+    ("Robot::Robot(int a) : Base(a), b_(f(1)) { }\n", {"Robot::Robot"}),
+    ("void Arm::raise(int by);\n", set()),
+    ("void f() { if (Arm::ready(1)) { g(); } Arm::raise(2); call(Arm::lower(3), [] { }); }\n", set()),
+])  # fmt: skip
+def test_which_functions_of_classes_a_file_defines(text, functions):
+    assert looked("declared_cpp", text, None).functions == functions
+
+
 def test_tables_that_differ_have_other_stamps():
     stamps = {
         UsageTable({}).stamp,

@@ -72,6 +72,10 @@ OPENCV = (
     "find_package(OpenCV REQUIRED)\n" + CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES} ${OpenCV_LIBS})"
 )
 H, HPP = "#include <tf2_geometry_msgs/tf2_geometry_msgs.h>\n", "#include <tf2_geometry_msgs/tf2_geometry_msgs.hpp>\n"
+NAMED_TARGET = (
+    "set(SLEDGE_TARGET_NAME run)\nadd_executable(${SLEDGE_TARGET_NAME} run.cpp)\n"
+    "install(TARGETS ${SLEDGE_NAME} DESTINATION lib)\n"
+)
 RCLCPP = "#include <rclcpp/rclcpp.hpp>\n"
 MAIN = "int main() { return 0; }\n"
 READ = '#include <opencv2/imgcodecs.hpp>\n#include <ros/ros.h>\nint main() { return cv::imread("a", %s).rows; }\n'
@@ -85,6 +89,36 @@ FLOE_DEPENDS = (
 )
 
 SILENT = {
+    "what the interfaces of the package rest on": Silent(
+        "ungiven-package",
+        ("jazzy",),
+        ament(
+            "find_package(geometry_msgs REQUIRED)\nfind_package(rosidl_default_generators REQUIRED)\n"
+            'rosidl_generate_interfaces(sled "msg/Pull.msg" DEPENDENCIES geometry_msgs)\n'
+            "add_executable(drive drive.cpp)\n"
+            "rosidl_get_typesupport_target(typesupport sled rosidl_typesupport_cpp)\n"
+            "target_link_libraries(drive ${typesupport})",
+            "geometry_msgs",
+            "buildtool_depend:rosidl_default_generators",
+            "exec_depend:rosidl_default_runtime",
+            "<member_of_group>rosidl_interface_packages</member_of_group>",
+            drive_cpp="#include <geometry_msgs/msg/point.hpp>\nint main() { return 0; }\n",
+        )
+        | {"msg/Pull.msg": "geometry_msgs/Point at\n"},
+        ("CMakeLists.txt", "target_link_libraries(drive ${typesupport})", ""),
+    ),
+    "headers of what the build downloads": Silent(
+        "removed-header",
+        ("humble",),
+        ament(
+            "include(FetchContent)\nFetchContent_Declare(Catch2 GIT_REPOSITORY https://example.org/Catch2.git)\n"
+            "FetchContent_MakeAvailable(Catch2)\nadd_executable(weigh weigh.cpp)\n"
+            "target_link_libraries(weigh Catch2::Catch2)",
+            "catch2",
+            weigh_cpp="#include <catch2/catch_test_macros.hpp>\nint main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "FetchContent_MakeAvailable(Catch2)\n", ""),
+    ),
     "what every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),
@@ -930,6 +964,60 @@ SILENT = {
             run_cpp=RCLCPP + MAIN,
         ),
         ("CMakeLists.txt", "set(CMAKE_CXX_STANDARD 14)", "add_compile_options(-std=c++14)"),
+    ),
+    "a linked target that may ask for a higher standard": Silent(
+        "changed-signature",
+        ("melodic",),
+        catkin(
+            "roscpp",
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
+            + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
+            "roscpp",
+            run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",
+        ),
+        ("CMakeLists.txt", "barometer::core", "barometer"),
+    ),
+    "a command that a private package may find along": Silent(
+        "unfound-command",
+        ("humble",),
+        {
+            "package.xml": manifest(),
+            "CMakeLists.txt": HEAD + "find_package(our_build_tools REQUIRED)\nament_package()\n",
+        },
+        ("CMakeLists.txt", "find_package(our_build_tools REQUIRED)\n", ""),
+    ),
+    "a command of a package that a variable names": Silent(
+        "unfound-command",
+        ("humble",),
+        {
+            "package.xml": manifest(),
+            "CMakeLists.txt": HEAD + "find_package($ENV{BUILD_TOOL} REQUIRED)\nament_package()\n",
+        },
+        ("CMakeLists.txt", "find_package($ENV{BUILD_TOOL} REQUIRED)\n", ""),
+    ),
+    "a variable that a package which is found may set": Silent(
+        "misspelt-cmake-variable",
+        ("jazzy",),
+        ament(
+            "find_package(sledge REQUIRED)\n" + NAMED_TARGET,
+            run_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "find_package(sledge REQUIRED)\n", ""),
+    ),
+    "a variable that a script outside the tree may set": Silent(
+        "misspelt-cmake-variable",
+        ("jazzy",),
+        ament(
+            "include(${OUR_TOOLS}/names.cmake)\n" + NAMED_TARGET,
+            run_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "include(${OUR_TOOLS}/names.cmake)\n", ""),
+    ),
+    "a library that nobody knows": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament("find_package(our_fingers REQUIRED)"),
+        ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
     ),
 }
 

@@ -57,6 +57,11 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     # What packages of the newest distro lack is no matter of an update.
     humble = Availabilities(DistroTarget("humble")).on_horizon(Symbol("header", OLD, TF2))
     assert humble.state == "deprecated"
+    # But a command of CMake that warns already is left in time.
+    command = Symbol("command", "ament_target_dependencies", ("ament_cmake_target_dependencies",))
+    distros = (DistroTarget(name) for name in ("jazzy", "kilted", "lyrical"))
+    ahead = [Availabilities(distro).on_horizon(command).state for distro in distros]
+    assert ahead == ["present", "upcoming", "removed"]
     assert Availabilities(DistroTarget("noetic")).on_horizon(field).state == "unknown"
 
 

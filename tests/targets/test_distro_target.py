@@ -366,3 +366,12 @@ def test_build_type(text, package, here, near):
 )
 def test_rosdep_says_nothing_of_systems_that_it_does_not_know(platform, expected):
     assert DistroTarget("jazzy", platform=platform).has_rosdep_rules() is expected
+
+
+@pytest.mark.parametrize(
+    ("distro", "key", "first"),
+    [("jazzy", "python-numpy", "python3-numpy"), ("noetic", "python-catkin-pkg", "python3-catkin-pkg"),
+     ("jazzy", "gazebo", ""), ("jazzy", "no-such-key", "")],
+)  # fmt: skip
+def test_keys_that_install_the_same_instead(distro, key, first):
+    assert next(iter(target(distro).keys_instead(key)), "") == first

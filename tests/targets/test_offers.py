@@ -208,6 +208,20 @@ def test_a_method_that_moved_to_a_base_is_judged_as_the_base_has_it(store):
     assert override("3.0.0") is None
 
 
+def test_an_override_of_what_moved_to_a_base_and_changed_there_is_judged_by_the_base(store):
+    old, new = "virtual void tick(int a);", "virtual void tick(int a, int b);"
+    forms = ("", old), ("", old + new), (old + new, ""), (new, "")
+    code = "namespace arm {{ struct Part {{ {} }}; struct Arm : Part {{ {} }}; }}"
+    surfaces = store(*(surface("arm", f"{n}.0.0", code.format(*form)) for n, form in enumerate(forms, 1)))
+    found = [
+        availability_of_use(Offers(target(arm=f"{n}.0.0"), surfaces), "arm", "arm::Arm::tick", "override", 1,
+                            ("int", "override"))
+        for n in (1, 2, 3, 4)
+    ]  # fmt: skip
+    assert found[:3] == [None, None, None]
+    assert (found[3].state, found[3].form, found[3].symbol.name) == ("changed", "override", "arm::Part::tick")
+
+
 def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
     own = "struct Part {{}}; struct Arm : Part {{ void move({}); }};"
     base = "struct Part {{ void move({}); }}; struct Arm : Part {{}};"

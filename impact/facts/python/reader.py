@@ -673,6 +673,8 @@ class PythonReader(ObjectUses, SourceText):
     def visit_Call(self, node: ast.Call) -> None:
         function = self.callee(node.func)
         keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
+        if keywords and getattr(node.func, "id", "") == "print" and "print_function" not in "".join(self.lines):
+            self.need(0, "`print` with keywords", node)
         before = self.conditional
         if "condition" in keywords and not isinstance(keywords["condition"], ast.Constant):
             self.conditional = True

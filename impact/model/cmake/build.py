@@ -157,17 +157,30 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
         return self.installed and not for_tests(self.conditions)
 
 
+class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A file of CMake code that include() or add_subdirectory() reads, where it lies outside of the package or does not
+    exist. path: relative to the workspace root, or as written where it lies above that. command: what reads it."""
+
+    path: str
+    command: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
+
+
 class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
     for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
-    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`)."""
+    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
+    module or policy of CMake itself, the version that brought it. alike: of a variable that nothing can have set, one
+    that is set there and has one word more or less in its name."""
 
     kind: str
     name: str
     at: At
     context: str = ""
     conditions: tuple[Condition, ...] = ()
+    alike: str = ""
 
 
 def for_tests(conditions: Iterable[Condition]) -> bool:
@@ -186,8 +199,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called. asked: the
-    packages whose X_FOUND a test reads."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
+    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
+    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -213,6 +227,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
+    repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
+    read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, constant
+from .names import SINCE
 from .regex import match
 from .values import CMakeValue, split_list
 
@@ -93,7 +94,7 @@ class _InWorld(CMakeTest):
             return None
         text = operand.text
         if kind == "POLICY":
-            return True
+            return None if text in SINCE else True
         if kind == "TARGET":
             return self.world.is_target(text)
         if kind == "COMMAND":

@@ -8,6 +8,7 @@ class TargetDraft:
     """A BuildTarget that still grows; lists keep the order of the commands."""
 
     __slots__ = (
+        "added",
         "alias_of",
         "at",
         "conditions",
@@ -40,7 +41,7 @@ class TargetDraft:
         self.export_name = ""
         self.public_standard = 0
         self.installed_includes: dict[str, None] = {}
-        self.excluded = False
+        self.excluded = self.added = False
         self.installed_as = kind  # the artifact: executable, library, static or module
 
     def finish(self) -> BuildTarget:

@@ -116,6 +116,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             )
         )
     if not (sought or flags & {"CONFIG", "NO_MODULE"}):
+        if required:
+            run.use_feature(f"Find{name}", name.at)
         _run_module(run, call, str(name))
     if required:
         found = CMakeValue((word("1", call.at),))
@@ -331,7 +333,10 @@ def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[W
         lower = name.lower()
         for suffix in ("SOURCE_DIR", "BINARY_DIR"):
             run.set_unknown(f"{lower}_{suffix}", call.at)
-        if call.name != "fetchcontent_getproperties":
+        if call.name == "fetchcontent_getproperties":
+            for variable in args[2::2]:
+                run.set_unknown(variable, call.at)
+        else:
             draft = run.new_target(name, "fetched", name.at)
             draft.alias_of = ""
 

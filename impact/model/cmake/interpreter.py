@@ -27,10 +27,11 @@ from .build import (
     FoundPackage,
     GeneratedInterfaces,
     Install,
+    ReadFile,
     UnknownCommand,
 )
 from .drafts import TargetDraft, Targets
-from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
+from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES, SINCE
 from .values import (
     LITERAL,
     MAX_TEXT,
@@ -78,6 +79,11 @@ class _TooMuch(Exception):
 SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 # Commands that read sources and compile nothing.
 _NO_BUILDER = re.compile(r"lint|format|tidy|check|uncrustify|style|doc|translation|coverage|install|propert|package")
+
+# Commands that do something else, or stop, where an argument is missing.
+_NEEDS_VALUES = frozenset(
+    {"install", "add_subdirectory", "add_library", "add_executable", "target_link_libraries", "target_sources"}
+)
 
 # Commands that name targets of the package.
 _ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
@@ -149,11 +155,14 @@ class Interpreter:
         self.links: dict = {}
         self.catkin_package: At | None = None
         self.before_catkin_package: tuple[str, ...] = ()
+        self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
+        self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
         self.asked: dict[str, None] = {}
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
         self.message_files: dict[tuple[str, At], None] = {}
+        self.read_elsewhere: dict[ReadFile, None] = {}
 
     def run(self) -> Build:
         """Interprets the package from its CMakeLists.txt on."""
@@ -248,6 +257,8 @@ class Interpreter:
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
+            repeated=tuple(self.repeated),
+            read_elsewhere=tuple(self.read_elsewhere),
             asked=tuple(self.asked),
         )
 
@@ -296,6 +307,7 @@ class Interpreter:
         """Runs one command."""
         self.spend(1)
         name = self.command = call.name
+        self.use_feature(name, call.at)
         handler = HANDLERS.get(name)
         if handler is not None:
             if name not in BUILTIN_COMMANDS:
@@ -309,6 +321,7 @@ class Interpreter:
             self.use_command(call)
             return wrapper(self, call, self.expand(call.templates)) or NORMAL
         words = self.expand(call.templates)
+        self.maybe_set.update(words)
         if name not in BUILTIN_COMMANDS:
             self.use_command(call)
             self.pass_sources(call, words)
@@ -339,6 +352,12 @@ class Interpreter:
         self.steps += steps
         if self.steps > MAX_STEPS:
             raise _TooMuch("more work than 40,000 commands")
+
+    def use_feature(self, name: str, at: At) -> None:
+        """Notes a command, module or policy that only newer versions of CMake have."""
+        since = SINCE.get(name)
+        if since and not self.silent and name not in self.definitions:
+            self.uses[UnknownCommand("feature", name, self.place(at), since, self.conditions)] = None
 
     def use_command(self, call: CommandCall) -> None:
         """Notes a command that neither CMake nor the tree defines."""
@@ -925,9 +944,27 @@ class Interpreter:
         """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
         if self.silent or name.startswith("CMAKE_"):
             return
-        if not name.endswith(READ_SUFFIXES) and not (name.startswith("CATKIN_") and self.command == "install"):
+        alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
+        if not alike and not name.endswith(READ_SUFFIXES) and not (
+            name.startswith("CATKIN_") and self.command == "install"
+        ):
             return
-        self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions)] = None
+        self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None
+
+    def find_alike(self, name: str) -> str:
+        """The variable that is set and has one word more or less in its name than one that a command which needs its
+        value reads; empty where there is none, or something may have set that one."""
+        words = name.split("_")
+        if self.command not in _NEEDS_VALUES or len(name) < 8 or len(words) < 2 or name in self.maybe_set:
+            return ""
+        if any(name.lower().startswith(found.name.lower()) for found in self.found):
+            return ""
+        # A package sets variables that begin as it is called (`find_package(Qt${VERSION})`).
+        if any(re.match(r"(?!find_package\()|find_package\(\$", reason) for _, reason in self.unresolved):
+            return ""
+        alike = [other for other in self.scope if abs(other.count("_") + 1 - len(words)) == 1]
+        alike = [other for other in alike if _is_longer(other.split("_"), words) or _is_longer(words, other.split("_"))]
+        return alike[0] if len(alike) == 1 else ""
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""
@@ -939,8 +976,10 @@ class Interpreter:
         return bool(separator) and any(made.how == "rosidl" and made.target == base for made in self.generated)
 
     def is_command(self, name: str) -> bool | None:
-        """True when CMake or the tree defines this command."""
+        """True when the tree or any version of CMake defines this command."""
         name = name.lower()
+        if name in SINCE and name not in self.definitions:
+            return None
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
     def path_exists(self, path: str, directory: bool) -> bool | None:
@@ -1022,6 +1061,13 @@ class Interpreter:
         if not self.silent:
             self.unresolved[(self.place(at or self.here()), reason)] = None
 
+    def add_read(self, path: str | None, command: str, name: Word) -> None:
+        """Collects a file of CMake code that lies outside of the package, or that does not exist. path: as relative()
+        gives it. name: how it is written."""
+        place = self.shown(name) if path is None else path
+        if not self.silent and self.call_site is None and name.sure and "$" not in place:
+            self.read_elsewhere[ReadFile(place, command, self.place(name.at), self.under(name))] = None
+
     def add_tools(self, args: list[Word]) -> None:
         """Collects the programs that the arguments of ExternalProject_Add() or FetchContent_Declare() start: what
         downloads, and the commands of steps."""
@@ -1061,10 +1107,26 @@ class Interpreter:
         if not self.silent:
             self.standards.append((number, self.place(at), is_default, by_flag, self.conditions))
 
+    def add_target(self, name: Word, kind: str) -> TargetDraft:
+        """Makes the target that add_library(), add_executable() or add_custom_target() adds."""
+        before, conditions = self.targets.get(name), self.under(name)
+        if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
+            opposite = {(held.text, not held.negated) for held in before.conditions}
+            if not any((held.text, held.negated) in opposite for held in conditions):
+                self.repeated[(str(name), self.place(name.at), merge(before.conditions, conditions))] = None
+        draft = self.new_target(name, kind, name.at)
+        draft.added = name.sure and kind not in ("imported", "alias")
+        return draft
+
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""
         conditions = self.under(name) if isinstance(name, Word) else self.conditions
         return self.targets.make(str(name), kind, self.place(at), conditions)
+
+
+def _is_longer(long: list[str], short: list[str]) -> bool:
+    """True for the words of a name with one more among them; numbers tell things apart."""
+    return any(long[:i] + long[i + 1 :] == short and long[i].isalpha() for i in range(len(long)))
 
 
 def _listing(args: list[Word]) -> CMakeValue:

@@ -83,6 +83,8 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             if path is not None and run.run_file(path, call.at) is not None:
                 return
         add_module(run, str(name))
+        if not optional:
+            run.use_feature(str(name), name.at)
         if name in MODULES:
             if name.startswith("Find") and not name.startswith("FindPackage"):
                 place = run.place(name.at)
@@ -95,12 +97,16 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     path = run.relative(run.resolve(name))
     if path is None:
         if not optional:
+            run.add_read(path, call.name, name)
             run.give_up(name.at, f"include({run.shown(name)}) is outside the tree")
         return
     if run.run_file(path, name.at) is not None:
+        if not optional and not run.inside(path):
+            run.add_read(path, call.name, name)
         return
     installed = run.exported_file(name)
     if (installed is None or run.run_file(installed, name.at) is None) and not optional:
+        run.add_read(path, call.name, name)
         run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
 
 
@@ -125,9 +131,12 @@ def add_subdirectory(run: Interpreter, call: CommandCall, args: list[Word]) -> i
     for directory in args if call.name == "subdirs" else args[:1]:
         relative = run.relative(run.resolve(directory))
         if relative is None:
+            run.add_read(relative, call.name, directory)
             run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) is outside the tree")
             continue
         signal = run.run_file(posixpath.join(relative, "CMakeLists.txt"), directory.at, relative)
+        if signal is None or not run.inside(f"{relative}/"):
+            run.add_read(relative, call.name, directory)
         if signal is None:
             run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) has no CMakeLists.txt in the tree")
         elif signal == FATAL:
@@ -179,7 +188,9 @@ def cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_policy(VERSION) and CMP0054."""
     if len(args) >= 2 and args[0] == "VERSION":
         run.minimum_policy = max(run.minimum_policy, version_key(args[1].split("...")[-1]))
-    elif args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
+    elif args[:1] == ["SET"] and len(args) > 1:
+        run.use_feature(str(args[1]), args[1].at)
+    if args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
         run.minimum_policy = max(run.minimum_policy, (3, 1))
 
 

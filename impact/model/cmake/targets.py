@@ -42,7 +42,7 @@ def add_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             sources.append(item)
     if "IMPORTED" in rest:
         kind = "imported"
-    draft = run.new_target(name, kind, name.at)
+    draft = run.add_target(name, kind)
     if form in ("STATIC", "OBJECT"):
         draft.installed_as = "static"
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
@@ -56,7 +56,7 @@ def add_executable(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     if _is_alias(run, args):
         return
     name, rest = args[0], args[1:]
-    draft = run.new_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable", name.at)
+    draft = run.add_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable")
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)])
 
@@ -234,7 +234,7 @@ _OF_CUSTOM_COMMANDS = name_set(
 @handles("add_custom_target", least=1)
 def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_custom_target()."""
-    draft = run.new_target(args[0], "custom", args[0].at)
+    draft = run.add_target(args[0], "custom")
     section = ""
     for item in args[1:]:
         if item in ("DEPENDS", "SOURCES", "BYPRODUCTS"):

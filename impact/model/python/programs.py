@@ -55,6 +55,21 @@ class ScriptSetup:
             for command, text, line in file.script_folders
         }
 
+    def list_all(self) -> dict[str, set[str]] | None:
+        """As list_programs(). Where entry points are installed is not asked, see unreachable-script."""
+        found: dict[str, set[str]] = {}
+        for file in self._files.values():
+            if file.unresolved:
+                return None
+            for name, *_ in file.entry_points:
+                found.setdefault(name, set()).add("")
+            for name in file.scripts:
+                found.setdefault(posixpath.basename(name), set()).add("")
+            for destination, pattern, _ in file.data_files:
+                if posixpath.normpath(destination).startswith("lib/"):
+                    found.setdefault(posixpath.basename(pattern), set()).add(posixpath.normpath(destination))
+        return found
+
     def find_programs(self, view: TargetView) -> dict[str, At]:
         """Programs that `ros2 run` and launch files are to find, by their names: all entry points where a folder is
         given, else those that something starts as a node or whose module is one. Those that data_files put into
@@ -81,6 +96,68 @@ def list_started_programs(view: TargetView, package: Package) -> dict[str, bool]
             if reference.kind == "executable" and reference.package == package.name:
                 sure = use.role == "run" and not reference.conditional
                 found[reference.name] = found.get(reference.name, False) or sure
+    return found
+
+
+def list_programs(package: Package) -> dict[str, set[str]] | None:
+    """Names of all programs that a package may install, or patterns of them, with the folders of the prefix; an empty
+    folder stands for one that nothing tells, or for a target that no rule installs. None where not all is known."""
+    if package.build_type == "ament_python":
+        setup = ScriptSetup(package)
+        programs = setup.list_all() if setup.is_known else None
+    elif package.build_type.startswith("ament_cmake"):
+        programs = _list_of_cmake(package)
+    else:
+        programs = None
+    return programs
+
+
+# Targets that tell what they make, and names that only CMake itself would tell.
+_MADE_ELSEWHERE = frozenset(("external", "fetched", "unknown"))
+# What commands that make no program are called.
+_HARMLESS = ("ament_", "rosidl_", "rclcpp_", "pluginlib_", "generate_parameter_", "find_package_", "nav2_package")
+
+
+def has_unknown_commands(package: Package) -> bool:
+    """True where CMake code calls commands that may build or install anything."""
+    uses = (use for use in package.build.uses if use.kind == "command")
+    return bool(package.build.unresolved) or any(not use.name.lower().startswith(_HARMLESS) for use in uses)
+
+
+def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
+    build = package.build
+    if not build.files or has_unknown_commands(package) or any(t.kind in _MADE_ELSEWHERE for t in build.targets):
+        return None
+    found: dict[str, set[str]] = {}
+    outputs = {target.name: target.output_name or target.name for target in build.targets}
+    placed: set[str] = set()
+    for install in build.installs:
+        if install.kind in ("python", "export"):
+            if install.kind == "python" and package.digest.setup:
+                return None
+            continue
+        for item in install.items:
+            if "$" in item or "$" in install.rename:
+                return None
+            if install.kind == "directory":
+                inside = item.rstrip("/") + "/"
+                for path in package.digest.files:
+                    if path.startswith(inside):
+                        rest = path[len(inside) :] if item.endswith("/") else path[len(posixpath.dirname(item)) + 1 :]
+                        folder = posixpath.dirname(posixpath.join(install.destination, rest))
+                        found.setdefault(posixpath.basename(path), set()).add(posixpath.normpath(folder))
+                continue
+            placed.add(item)
+            name = install.rename or outputs.get(item, posixpath.basename(item))
+            found.setdefault(name, set()).add(posixpath.normpath(install.destination) if install.destination else "")
+    for target in build.targets:
+        if "$" in target.name or "$" in outputs[target.name]:
+            return None
+        if target.name not in placed:
+            found.setdefault(outputs[target.name], set()).add("")
+    for export in build.exports:
+        if export.how == "component" and getattr(export, "executable", ""):
+            found.setdefault(export.executable, set()).add("")
     return found
 
 

@@ -1,10 +1,13 @@
 """Names that the Python files of a package use and that nothing defines: neither the file itself, nor the module of the
-package from which it imports them; and functions that entry points name and their modules lack."""
+package from which it imports them; modules of the package that are not there; and functions that entry points name and
+their modules lack."""
 
 from __future__ import annotations
 
 import posixpath
+import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cached_property
 
 import msgspec
 
@@ -14,59 +17,106 @@ from ...facts.setup import SetupFile
 
 
 def list_undefined(
-    files: Mapping[str, PythonFile],
-    others: Collection[str],
-    paths: Iterable[str],
-    setup: Iterable[tuple[str, SetupFile]] = (),
+    files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]
 ) -> Iterator[tuple[str, Import]]:
-    """Such names, each as its import with the path it stands in; of those that the file uses itself the module is
-    empty. files: the Python files of a package by their paths. others: what modules and libraries of the package are
-    called. paths: all its files, of which modules may be built that are called like them. setup: its setup files."""
-    modules: dict[str, list[str]] = {}
-    built: set[str] = set()
-    for path in files:
-        modules.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
+    """Such names, each as its import with the path it stands in; the module is empty for names that the file uses
+    itself, and for modules, whose names have a dot. files: the Python files of a package by their paths. others: what
+    modules and libraries of the package are called. paths: all its files, of which modules may be built."""
+    modules = _Modules(files, others, paths)
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
             continue  # settings of tools, which define names for them
         for use in facts.unbound:
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
         for item in facts.imports:
-            module = _find_module(path, item, modules) if item.names and "*" not in item.names else None
+            if not item.level and modules.lacks(item.module):
+                yield path, msgspec.structs.replace(item, module="", names=(item.module,))
+                continue
+            module = modules.find(path, item) if item.names and "*" not in item.names else None
             bound = files[module].bound if module is not None else ""
             for name in item.names if bound and module != path else ():
-                if f" {name} " in bound or name in others or name.startswith("_"):
-                    continue
-                built = built or {posixpath.basename(one).partition(".")[0] for one in paths}
-                if name not in built:
+                if f" {name} " not in bound and name not in others and not modules.may_be_built(name):
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
 
 
+def list_undefined_functions(
+    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Functions of entry points that their modules lack, as imports of them that stand in the setup file. files: as
+    above. setup: the setup files of a package by their paths."""
     for path, told in setup:
         for _, module, line, function in told.entry_points:
             place = next((one for one in told.places_of(posixpath.dirname(path), module) if one in files), None)
             name = function.partition(".")[0]
             if place is not None and name and files[place].bound and f" {name} " not in files[place].bound:
-                yield path, Import(module, (name,), 0, line, 0, False, ())
+                yield path, Import(module, (name,), 0, line, 0)
 
 
-def _find_module(path: str, item: Import, modules: Mapping[str, list[str]]) -> str | None:
-    """The file of a package that an import names, None where it may be another one or none. modules: all files by the
-    last parts of their modules' names."""
-    ending = item.module.replace(".", "/")
-    near = modules.get(posixpath.basename(ending), ()) if ending else ()
-    if item.level:
-        folder = path
-        for _ in range(item.level):
-            folder = posixpath.dirname(folder)
-        exact = posixpath.join(folder, ending).rstrip("/")
-        found = [one for one in (near or modules.get(posixpath.basename(exact), ())) if _stem_of(one) == exact]
-    elif "/" in ending:
-        found = [one for one in near if f"/{_stem_of(one)}".endswith(f"/{ending}")]
-    else:  # of one word there are many modules elsewhere; the one beside a program comes first
-        found = [posixpath.join(posixpath.dirname(path), f"{ending}.py")] if len(near) == 1 else []
-        found = [one for one in found if one in near]
-    return found[0] if len(found) == 1 else None
+# What interfaces and settings are generated into.
+_GENERATED = frozenset(("action", "cfg", "msg", "srv"))
+# How modules end that protoc and Qt's tools write.
+_MADE = ("_pb2", "_pb2_grpc", "_rc", "_ui")
+
+
+class _Modules:
+    """The modules of a package. files, others, paths: as above."""
+
+    def __init__(self, files: Collection[str], others: Collection[str], paths: Iterable[str]):
+        self._others, self._paths = others, paths
+        self._folders = {posixpath.dirname(path) for path in files}
+        self._by_name: dict[str, list[str]] = {}
+        # Folders with an __init__.py that lie in none such, by their names.
+        self._roots: dict[str, list[str]] = {}
+        for path in files:
+            self._by_name.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
+            root = _stem_of(path)
+            if path.endswith("/__init__.py") and f"{posixpath.dirname(root)}/__init__.py" not in files:
+                self._roots.setdefault(posixpath.basename(root), []).append(root)
+
+    @cached_property
+    def _built(self) -> set[str]:
+        named = {posixpath.basename(path).partition(".")[0] for path in self._paths if not path.endswith(".py")}
+        roots = tuple(f"{root}/" for several in self._roots.values() for root in several)
+        inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
+        return named.union(name for name in self._others if name not in inside and name not in self._by_name)
+
+    def may_be_built(self, name: str) -> bool:
+        """Whether a module of this name may come from something else than Python."""
+        return name.startswith("_") or name in self._built or name.endswith(_MADE)
+
+    def lacks(self, module: str) -> bool:
+        """Whether a module surely is to be one of the package, by its first name, and there is none."""
+        rest = module.split(".")[1:]
+        meant = self._meant(module) if rest else set()
+        if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
+            return False
+        there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
+        return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
+
+    def _meant(self, module: str) -> set[str]:
+        """The paths, without endings, that a module has below folders which its first name may be."""
+        head, *rest = module.split(".")
+        roots = self._roots.get(head, ()) if head not in sys.stdlib_module_names else ()
+        return {"/".join((root, *rest)) for root in roots}
+
+    def find(self, path: str, item: Import) -> str | None:
+        """The file that an import names, None where it may be another one or none."""
+        ending = item.module.replace(".", "/")
+        near = self._by_name.get(posixpath.basename(ending), ()) if ending else ()
+        if item.level:
+            folder = path
+            for _ in range(item.level):
+                folder = posixpath.dirname(folder)
+            exact = posixpath.join(folder, ending).rstrip("/")
+            near = near or self._by_name.get(posixpath.basename(exact), ())
+            found = [one for one in near if _stem_of(one) == exact]
+        elif "/" in ending:
+            meant = self._meant(item.module)
+            found = [one for one in near if _stem_of(one) in meant]
+        else:  # of one word there are many modules elsewhere; the one beside a program comes first
+            beside = posixpath.join(posixpath.dirname(path), f"{ending}.py")
+            found = [beside] if list(near) == [beside] else []
+        return found[0] if len(found) == 1 else None
 
 
 def _stem_of(path: str) -> str:

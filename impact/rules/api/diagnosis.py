@@ -1,14 +1,22 @@
 """What the rules of this family say of something that a target lacks, or will lack."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 
+from ...model.package import ReferenceUse
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, Doubt, FixAction, Text, Upcoming, Value
+from ..rule import Diagnostic, Doubt, FixAction, Text, Upcoming, Value, doubts_of_place
 
 UPSTREAM = "{upstream}[[ {version}]]"
 """The package or library that decides, in the version that the target has."""
+
+
+GONE_PACKAGE = Text(
+    "`{subject}` belongs to {upstream}, which {distro} does not have[[ (last in {last})]]", "[[{replacement}]]"
+)
+"""For what find_gone_package() yields."""
 
 
 def availability_texts(verb: str = "use") -> dict[str, Text]:
@@ -75,6 +83,28 @@ def diagnose(
         return diagnostic
     place = getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
     return Upcoming(diagnostic, changed or found.package, found.horizon, order or place)
+
+
+def find_gone_package(
+    view: TargetView, package: Package, use: ReferenceUse, upstream: str, subject: str
+) -> Iterator[Diagnostic]:
+    """Says that a launch file or parameter file names something of a package that the target does not have, where
+    no other rule does: package.xml does not declare it. Not of tests, and not in ROS 1, where releases carry many a launch
+    file that nobody starts any more."""
+    if view.target.ros == 1 or use.role == "test":
+        return
+    if not view.is_package(upstream) or upstream in view.workspace.packages or upstream in package.declared:
+        return
+    if view.available(upstream) or view.underlaid or view.private(upstream):
+        return
+    found = find_missing(view, "package", upstream, ())
+    if found is not None and found.state in ("removed", "not yet"):
+        last = view.last_distro(upstream)
+        data = {
+            "upstream": upstream, "distro": view.target.distro, "replacement": view.successor(upstream),
+            "last": last if found.state == "removed" and last != view.target.distro else "",
+        }  # fmt: skip
+        yield Diagnostic(use.at, subject, package.name, data, "package", (*doubts_of_place(view, use.role), Doubt.LATE))
 
 
 def is_of_another_distro(view: TargetView, path: str, files: Collection[str]) -> bool:

@@ -78,13 +78,15 @@ class IncludedHeaders:
             changed = f"{change.package} {path}"
             return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, changed=changed, ordered=True)
         found = view.header_availability(path)
-        if found is not None and (found.is_missing or found.state == "upcoming"):
+        if found is not None and view.breaks_under(found, include.conditions):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
             return HeaderLoss(found, fix=fix, ordered=True)
         found = view.lost_header(path)
         if found is None:
             return None
-        if found.form == "platform" and (view.opaque_libraries(package, path) or view.blind(package)):
+        if found.form == "platform" and (
+            view.opaque_libraries(package, path) or view.blind(package) or _is_downloaded(package, path)
+        ):
             return HeaderLoss(None)  # something that comes along has contents that are not known
         return HeaderLoss(found, found.form)
 
@@ -96,6 +98,12 @@ class IncludedHeaders:
             return change
         change = self._early.get(path)
         return change if change is not None and view.has_released_header(change.package, path) is False else None
+
+
+def _is_downloaded(package: Package, path: str) -> bool:
+    """Whether the build downloads a project that is called like the folder of a header."""
+    downloaded = (target.name for target in package.build.targets if target.kind in ("fetched", "external"))
+    return path.partition("/")[0].lower() in map(str.lower, downloaded)
 
 
 def included_headers(view: TargetView) -> IncludedHeaders:

@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from ...model.misspelling import SpellingIndex, nearest
+from ...model.misspelling import SpellingIndex
 from ...model.package import IncludeUse, is_header
 from ...model.view import TargetView
 from ...model.workspace import Package, snake
@@ -114,7 +114,7 @@ def _find_never_generated(view: TargetView, path: str) -> Fault | None:
     if view.providers.header_history(head, path) or view.has_released_header(head, path) is not False:
         return None
     stem, _, ending = rest.rpartition(".")
-    close = nearest(stem, SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)))
+    close = SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)).nearest(stem)
     return Fault("never generated", {"upstream": head, "replacement": f"{head}/{close}.{ending}" if close else ""})
 
 

@@ -10,7 +10,8 @@ Why it breaks
 
 Severity
     error for commands and targets that are surely reached; warning for variables, which only the table tells of, under
-    conditions that are not known, and where the exports of the target's version cannot be told whole.
+    conditions that are not known, and where the exports of the target's version cannot be told whole; one warning for
+    what is deprecated on the target and removed on the newest distro.
 
 Example
     ament_target_dependencies(node rclcpp)      # removed in ament_cmake 2.8.5
@@ -26,6 +27,7 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.cmake.build import At
+from ...model.cmake.names import MODULES
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.symbol import Symbol
@@ -37,7 +39,8 @@ Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 @rule(scope="target", texts=availability_texts())
 def removed_cmake_name(view: TargetView):
-    gone = {c.old: c.package for c in view.changes("cmake-removed", "cmake-renamed") if c.state == "removed"}
+    rows = view.changes("cmake-removed", "cmake-renamed")
+    gone = {c.old: c.package for c in rows if c.state in ("removed", "deprecated")}
     for package in view:
         names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
         names += [
@@ -60,7 +63,7 @@ def _list_reviewed(
         if owner is None or name in seen or not view.active(conditions):
             continue
         found = view.availability(Symbol(kind, name, (owner,)))
-        if found.is_missing:
+        if view.breaks_under(found, conditions):
             seen.add(name)
             doubts = (*doubts_of_place(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
             yield diagnose(found._replace(sure=True), at, name, package.name, doubts)
@@ -70,7 +73,7 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
     """What the stored versions of the packages that are found do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
     own = {target.name for one in view.workspace for target in one.build.targets}
-    places: dict[tuple[str, str], tuple[At, bool]] = {}
+    places: dict[tuple[str, str], tuple[At, bool, tuple[Condition, ...]]] = {}
     for name, at, conditions, kind in names:
         # A variable may be set in more ways than its package shows.
         if kind == "variable" or (kind == "target" and ("::" not in name or "$" in name or name in own)):
@@ -80,9 +83,29 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
         certain = view.certain(conditions)
         key = kind, name.lower() if kind == "command" else name
         if key not in places or (certain and not places[key][1]):
-            places[key] = at, certain
-    for (kind, name), (at, certain) in places.items():
+            places[key] = at, certain, conditions
+    for (kind, name), (at, certain, conditions) in places.items():
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
         lost = find_missing(view, kind, name, packages)
-        if lost is not None:
+        if lost is None or not view.breaks_under(lost, conditions):
+            continue
+        if not (lost.library and _may_be_made(view, package, name)):
             yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL,))
+
+
+def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
+    """Whether a target of a system library may come from something else than its own configuration: a find module, or
+    what a package that is found brings."""
+    space = _fold(name.partition("::")[0])
+    found = [one.name for one in package.build.found if one.how == "find_package"]
+    named = [one for one in found if _fold(one) == space]
+    return (
+        not named
+        or bool(package.build.unresolved)
+        or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
+        or any(space in _fold(one) for one in view.spread(found) if view.is_package(one))
+    )
+
+
+def _fold(name: str) -> str:
+    return name.lower().replace("-", "").replace("_", "")

@@ -2,7 +2,8 @@
 
 What it does
     Reports nodes that launch files and scripts start, launch files that they include, and arguments that they give to
-    those, which the target's version of the package does not install or declare, and an earlier or later version does.
+    those, which the target's version of the package does not install or declare, and an earlier or later version does;
+    misspelt ones, and nodes of packages that the target does not have and package.xml does not declare.
 
 Why it breaks
     `ros2 launch` stops with "executable not found" or "file not found" when the file is started; an argument that is
@@ -20,7 +21,7 @@ Use instead
     Node(package='controller_manager', executable='spawner')
 
 Not reported
-    What the workspace itself provides; packages that the target does not have at all; arguments that any launch file of
+    What the workspace itself provides; arguments that any launch file of
     the target's version declares, since they are handed on; files in folders that are called after another distro.
 """
 
@@ -31,12 +32,15 @@ from ...model.package import ReferenceUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rule
-from .diagnosis import UPSTREAM, availability_texts, diagnose, find_missing, is_of_another_distro
+from .diagnosis import (
+    GONE_PACKAGE, UPSTREAM, availability_texts, diagnose, find_gone_package, find_missing, is_of_another_distro,
+)  # fmt: skip
 
 
 @rule(
     texts={
         **availability_texts(),
+        "package": GONE_PACKAGE,
         "argument": Text(f"`{{file}}` of {UPSTREAM} no longer has an argument `{{name}}`"),
         "argument early": Text(f"`{{file}}` of {UPSTREAM} has no argument `{{name}}`[[ (added in {{since}})]]"),
     },
@@ -49,6 +53,7 @@ def removed_executable(view: TargetView, package: Package):
             continue
         if reference.package and reference.package != package.name and "$" not in reference.name:
             if reference.kind == "executable":
+                yield from find_gone_package(view, package, use, reference.package, reference.name)
                 yield from _lost(view, package.name, use, "executable", reference.name)
             elif reference.kind == "file":
                 path = _launch_file(view, reference.package, reference.name)

@@ -2,7 +2,8 @@
 
 What it does
     Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
-    later version of the package declares, and the target's does not.
+    later version of the package declares, and the target's does not; those of packages that the target does not have
+    and package.xml does not declare; misspelt ones, and those that a package of the workspace does not declare.
 
 Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
@@ -19,38 +20,72 @@ Use instead
     plugin: "nav2_behaviors::Spin"              # Jazzy and later
 
 Not reported
-    What the workspace itself provides; packages that the target does not have at all; files in folders that are called
-    after another distro.
+    What the workspace itself provides; names that no package is called after and that no version is known to have;
+    files in folders that are called after another distro.
 """
 
+import difflib
 import re
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
+from ...model.python.programs import has_unknown_commands
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming, rule
-from .diagnosis import availability_texts, diagnose, find_missing, is_of_another_distro
+from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from .diagnosis import (
+    GONE_PACKAGE, availability_texts, diagnose, find_gone_package, find_missing, is_of_another_distro,
+)  # fmt: skip
 
 
-@rule(scope="target", texts=availability_texts())
+@rule(
+    scope="target",
+    texts={
+        **availability_texts(),
+        "package": GONE_PACKAGE,
+        "own": Text("`{subject}` is not declared by {upstream}", help="[[{upstream} has `{alike}`]]"),
+    },
+)
 def removed_plugin(view: TargetView):
-    own = {plugin.name or plugin.type for package in view.workspace for _, plugin in package.digest.plugins}
+    declared = {package.name: _declared(package) for package in view.workspace}
+    own = {name for names in declared.values() for name in names}
     for package in view:
-        yield from rate_upcoming(_of_package(view, package, own))
+        yield from rate_upcoming(_of_package(view, package, own, declared))
 
 
-def _of_package(view: TargetView, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
+def _declared(package: Package) -> set[str]:
+    """Names of the plugins and components of a package of the workspace."""
+    names = {name for _, plugin in package.digest.plugins for name in (plugin.name, plugin.type) if name}
+    components = (export.item for export in package.build.exports if export.how == "component")
+    return names.union(components, package.digest.registered)
+
+
+def _of_package(
+    view: TargetView, package: Package, own: set[str], declared: dict[str, set[str]]
+) -> Iterator[Diagnostic | Upcoming]:
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         name = use.reference.name
         # The type of a transmission is a word for whoever reads the description; nothing loads it as it stands.
         if use.reference.kind != "plugin" or name in own or name.startswith(("$", "transmission_interface/")):
             continue
-        found = find_missing(view, "plugin", name, _packages(view, package, use))
-        if found is None or is_of_another_distro(view, use.at.path, files):
+        if is_of_another_distro(view, use.at.path, files):
             continue
         loaded = bool(use.reference.package) and not use.reference.conditional
+        head = use.reference.package or _head(name)
+        known = declared.get(head, set())
+        if known:
+            owner = view.workspace.packages[head]
+            if not any("$" in one for one in known) and not has_unknown_commands(owner):
+                close = difflib.get_close_matches(name, sorted(known), 1)
+                data = {"upstream": head, "alike": close[0] if close else ""}
+                doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
+                yield Diagnostic(use.at, name, package.name, data, "own", doubts)
+            continue
+        found = find_missing(view, "plugin", name, _packages(view, package, use))
+        if found is None:
+            yield from find_gone_package(view, package, use, head, name)
+            continue
         other = _respelt(view, found.package, name)
         doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
@@ -59,9 +94,14 @@ def _of_package(view: TargetView, package: Package, own: set[str]) -> Iterator[D
 
 def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
-    head = re.split(r"/|::", use.reference.name)[0]
-    named = [name for name in (use.reference.package, head) if name and view.is_package(name)]
-    return named or sorted(view.closure(package))
+    heads = (use.reference.package, _head(use.reference.name))
+    named = [name for name in heads if name and view.is_package(name) and view.available(name)]
+    return named or sorted(name for name in view.closure(package) if name not in view.workspace.packages)
+
+
+def _head(name: str) -> str:
+    """The package that a plugin is called after."""
+    return re.split(r"/|::", name)[0]
 
 
 def _respelt(view: TargetView, package: str, name: str) -> str:

@@ -2,7 +2,7 @@
 
 What it does
     Reports names that a Python file neither binds nor imports and that are no builtins, such as a class whose import
-    was forgotten; names that are imported from a module of the same package which lacks them; and names that are
+    was forgotten; names that are imported from a module of the same package which lacks them, or is not there; and
     builtins of Python 2 alone (`raw_input`, `unicode`), or methods of its dictionaries (`iteritems`), where the target
     has Python 3.
 
@@ -43,6 +43,9 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
         "python 2": Text(
             "`{subject}` is not defined in Python {version}[[ ({horizon})]]", "use its successor in Python 3"
         ),
+        "module": Text(
+            "`{subject}` is no module of the package", "import it by its path below the folder that is installed"
+        ),
         "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
     },
 )
@@ -51,14 +54,13 @@ def undefined_name(view: TargetView):
         for use, name in _list_uses(view, package):
             if use.module or not _is_of_python2(name):
                 doubts = (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
-                kind = "imported" if use.module else "undefined"
+                kind = "imported" if use.module else "module" if "." in name else "undefined"
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts)
 
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
-                doubts = (*_doubts_of(use), not name.startswith(".") or Doubt.INCOMPLETE)
-                yield Refused(use, name.lstrip("."), "python 2", doubts=doubts, conditions=use.conditions)
+                yield Refused(use, name.lstrip("."), "python 2", doubts=_doubts_of(use), conditions=use.conditions)
 
     yield from report_refused(view, find)
 
@@ -74,4 +76,5 @@ def _is_of_python2(name: str) -> bool:
 
 
 def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
-    return (Doubt.LATE,) if use.lazy else ()
+    doubts = (Doubt.LATE,) if use.lazy else ()
+    return (*doubts, Doubt.INCOMPLETE) if use.names[0].startswith(".") else doubts

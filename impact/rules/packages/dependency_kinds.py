@@ -8,7 +8,8 @@ from ...model.workspace import Package
 from ..evidence import circular
 from ..rule import Declare, Remove
 
-_FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
+# What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
+_FOR_BUILD = frozenset({"build", "buildtool"})
 _FOR_DEPENDANTS = frozenset({"build_export", "exec", "buildtool_export"})
 FOR_RUN = frozenset({"exec", "build_export"})
 """Kinds of dependencies that install what a program needs to run."""

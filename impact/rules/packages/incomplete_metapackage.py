@@ -16,7 +16,8 @@ Use instead
     <exec_depend>arm_control</exec_depend>
 
 Not reported
-    Packages for tests, examples, demos or simulation by their names; metapackages that bring few of their neighbours.
+    Packages for tests, examples, demos or simulation by their names; metapackages that bring few of their neighbours;
+    packages that another one of them brings.
 """
 
 import posixpath
@@ -49,7 +50,9 @@ def incomplete_metapackage(view: TargetView, package: Package):
     folder = posixpath.dirname(package.path)
     members = {p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
     missing = [name for name in members - declared.keys() if not _APART.search(name)]
-    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
+    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS:
+        return
+    if missing[0] in view.spread({package.name, *declared}):
         return
     tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
     yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})

@@ -20,10 +20,13 @@ def list_installing(view: TargetView) -> Iterator[tuple[Package, list[Install]]]
 
 
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:
-    """Whether an install rule takes a file."""
+    """Whether an install rule takes a file, or may take it: a path with a variable may be any that ends like it."""
     for install in installs:
         for item in install.items:
-            if "$" in item:
+            name = posixpath.basename(item)
+            if "$" in item and ("$" in name or install.kind not in ("files", "programs")):
+                return True
+            if "$" in item and name == posixpath.basename(path):
                 return True
             item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
             if path == item:
@@ -34,11 +37,6 @@ def is_installed(package: Package, installs: list[Install], path: str) -> bool:
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True
     return False
-
-
-def has_only_data(package: Package, installs: list[Install]) -> bool:
-    """Whether a package of catkin builds nothing and installs nothing."""
-    return not installs and package.build_type == "catkin" and not package.build.targets
 
 
 def list_references(view: TargetView) -> dict[str, dict[str, set[str]]]:

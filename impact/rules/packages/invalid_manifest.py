@@ -2,13 +2,15 @@
 
 What it does
     Reports manifests that are not XML, lack a required element, carry tags that no format knows (a misspelt
-    `build-depend` is silently no dependency at all), or tags of another format than the one they declare.
+    `build-depend` is silently no dependency at all), or tags of another format than the one they declare, and
+    dependencies inside of `<export>`.
 
 Why it breaks
     catkin, colcon, rosdep and bloom refuse the package, or overlook the dependency.
 
 Severity
-    error: catkin_pkg refuses such a manifest, and with it catkin, colcon and bloom.
+    error: catkin_pkg refuses such a manifest, and with it catkin, colcon and bloom. warning for a dependency inside of
+    `<export>`, which no tool reads.
 
 Example
     <build-depend>rviz</build-depend>
@@ -19,9 +21,10 @@ Use instead
 
 import re
 
+from ...facts.manifest import ANY_FORMAT
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, Replace, Text, rule
+from ..rule import Diagnostic, Doubt, Replace, Text, rule
 
 _HELP = "[[write `{replacement}`]]"
 _TAGS = {
@@ -45,6 +48,10 @@ _TAGS = {
         "tag": Text(
             "`<{subject}>{text}</{subject}>` is not a tag of format {format}, so `{text}` is not declared", _HELP
         ),
+        "export": Text(
+            "`<{tag}>{subject}</{tag}>` stands inside of `<export>`, so `{subject}` is not declared",
+            "move it out of `<export>`",
+        ),
         "problem": Text("{problem}", "correct the manifest"),
         "condition": Text(
             "the condition `{subject}` cannot be read", "write it as REP 149 says, such as `$ROS_VERSION == 2`"
@@ -62,6 +69,10 @@ def invalid_manifest(workspace: Workspace):
             data = {"text": text, "format": manifest.format, "replacement": f"<{words}>" if words != tag else ""}
             fix = _respell(path, line, tag, words) if known else ()
             yield Diagnostic(At(path, line), tag, package.name, data, "tag", fix=fix)
+        for export in manifest.exports:
+            if export.tag in ANY_FORMAT and export.text and export.text not in package.declared:
+                at, data = At(path, export.line), {"tag": export.tag}
+                yield Diagnostic(at, export.text, package.name, data, "export", (Doubt.LATE,))
         for problem in manifest.problems:
             if problem.line not in misspelt:
                 at, data = At(path, problem.line), {"problem": problem.message}

@@ -1,12 +1,13 @@
-"""misplaced-install: an install rule puts headers where nobody looks for them, or scripts that cannot be executed.
+"""misplaced-install: an install rule puts headers, modules, components or scripts where nobody can use them.
 
 What it does
     Reports a folder `include` that is installed into another one of that name, headers that are installed under
-    another folder's name than they are included by, and scripts that install(FILES) copies without the permission to
-    be executed.
+    another folder's name than they are included by, scripts that install(FILES) copies without the permission to be
+    executed, registered components outside of `lib`, and folders of another Python than the target's.
 
 Why it breaks
-    The package builds from its own tree; dependants do not find its headers, and rosrun or ros2 run not its scripts.
+    The package builds from its own tree; dependants do not find its headers, rosrun or ros2 run not its scripts, Python
+    not its modules, and component containers not its library, which they take from `lib`.
 
 Severity
     error where another package of the workspace compiles such a header, and for scripts that are installed among
@@ -19,7 +20,7 @@ Use instead
     install(DIRECTORY include/ DESTINATION include)
 
 Not reported
-    Launch files and other scripts that programs run as data.
+    Launch files and other scripts that programs run as data, or that CMake code gives to the interpreter.
 """
 
 import posixpath
@@ -46,6 +47,14 @@ from .install_rules import is_installed, list_installing
             "headers that are included as `{name}/...` are installed into `{destination}`",
             "install them into `{place}`",
         ),
+        "component": Text(
+            "the component library `{subject}` is installed into `{destination}`, but containers load it from `lib`",
+            "install(TARGETS {subject} LIBRARY DESTINATION lib)",
+        ),
+        "python": Text(
+            "`{subject}` belongs to Python {version}, but the target has Python {own}",
+            "take the folder from the Python that CMake finds, or use ament_python_install_package()",
+        ),
     },
 )
 def misplaced_install(view: TargetView):
@@ -53,6 +62,8 @@ def misplaced_install(view: TargetView):
         yield from _list_doubled(view, package, installs)
         yield from _list_not_executable(view, package, installs)
         yield from _list_renamed(view, package, installs)
+        yield from _list_components(view, package, installs)
+        yield from _list_other_python(view, package, installs)
 
 
 def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
@@ -102,6 +113,8 @@ def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagno
             inside = path[len(package.path) :].lstrip("/")
             started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
             if path in package.digest.scripts and started and path not in programs and not inside.endswith(_RUN_BY):
+                if posixpath.basename(path) in package.digest.interpreted:
+                    continue
                 name = posixpath.basename(path)
                 sure = among_programs or _is_node(view, package, path)
                 doubts = (bool(sure) or Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
@@ -136,3 +149,29 @@ def _list_renamed(view: TargetView, package, installs) -> Iterator[Diagnostic]:
             place = f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{name}" if catkin else f"include/{name}"
             data = {"name": name, "destination": install.destination, "place": place}
             yield Diagnostic(install.at, subject, package.name, data, "renamed", doubts)
+
+
+def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+    """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
+    components = {e.context for e in package.build.exports if e.how == "component" and view.active(e.conditions)}
+    by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
+    placed: dict[str, list] = {}
+    for install in installs:
+        for item in install.items if install.kind == "targets" else ():
+            placed.setdefault(item, []).append(install)
+    for name in sorted(components & by_name & placed.keys()):
+        folders = {install.destination.rstrip("/") for install in placed[name]}
+        if "lib" in folders or any("$" in folder or not folder for folder in folders):
+            continue
+        data = {"destination": placed[name][0].destination}
+        yield Diagnostic(placed[name][0].at, name, package.name, data, "component", (Doubt.LATE,))
+
+
+def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+    """Folders of the prefix that are those of one version of Python, which the target does not have."""
+    own = f"{view.target.python_major}.{view.target.python}"
+    for install in installs:
+        found = re.search(r"(?:^|/)python([23]\.\d+)/(?:site|dist)-packages", install.destination)
+        if found is not None and found.group(1) != own and view.certain(install.conditions):
+            data = {"version": found.group(1), "own": own}
+            yield Diagnostic(install.at, install.destination, package.name, data, "python", (Doubt.LATE,))

@@ -19,7 +19,8 @@ Use instead
     find_package(TinyXML REQUIRED)
 
 Not reported
-    Packages with a module of their own; libraries whose platform package has a configuration for CMake.
+    Packages with a module of their own; libraries whose platform package has a configuration for CMake; packages one of
+    whose catkin components finds cmake_modules in turn.
 """
 
 from ...model.view import TargetView
@@ -39,7 +40,8 @@ def missing_cmake_modules(view: TargetView, package: Package):
         return
     if package.build_type != "catkin":
         return
-    names = {f.name for f in package.build.found}
+    names = view.roles.found_with(f.name for f in package.build.found if f.how == "catkin")
+    names |= {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:
         if found.how != "find_package" or f"Find{found.name}.cmake" in own or not _is_brought(view, found.name):

@@ -83,12 +83,14 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             item = link.item if link.how == "link" else known.name
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
-            few = Together("passed on", EXPORTED)
+            loaded = link.how == "ament" and is_only_loaded(view, package)
+            few = Together("passed on by plugins", 1) if loaded else Together("passed on", EXPORTED)
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
 
 
 def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
-    if link.how == "ament" and is_only_loaded(view, package):
+    exports_targets = any(e.how == "ament_export_targets" for e in package.build.exports)
+    if link.how == "ament" and not exports_targets and is_only_loaded(view, package):
         return (Doubt.UNCOMPILED,)
     if _comes_with_client_library(view, name):
         return (Doubt.DISPENSABLE,)

@@ -65,8 +65,6 @@ def _list_targets(view: TargetView, package, installs, started: set[str]) -> Ite
             or not view.certain(target.conditions)
         ):
             continue
-        if _is_aside(package, target):
-            continue
         name = target.output_name or target.name
         why = None
         if target.kind == "executable" and name in started:
@@ -81,7 +79,7 @@ def _list_targets(view: TargetView, package, installs, started: set[str]) -> Ite
             t.name in installed for t in package.build.targets if t.kind == "executable"
         ):
             why = "program"
-        if why:
+        if why and (why == "started" or not _is_aside(package, target)):
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
             stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
             doubts = () if stops and not package.build.unresolved else (Doubt.DISTURBS,)

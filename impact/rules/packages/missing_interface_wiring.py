@@ -17,12 +17,13 @@ Use instead
     add_dependencies(bridge ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 Not reported
-    Targets that wait through another target of the package, or through `${catkin_EXPORTED_TARGETS}`.
+    Targets that wait through another target of the package, or through `${catkin_EXPORTED_TARGETS}`; interfaces of
+    packages that are released, and so installed before the build.
 """
 
 import re
 
-from ...model.view import TargetView
+from ...model.view import TargetView, interface_of
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Insert, Text, rule
 
@@ -55,8 +56,10 @@ def missing_interface_wiring(view: TargetView, package: Package):
             else:
                 continue
         else:
-            other = view.workspace.packages.get(head)
-            if other is None or not view.workspace.is_interface_header(head, rest):
+            if head not in view.workspace.packages:
+                if not _is_built_beside(view, package, include.path):
+                    continue
+            elif not view.workspace.is_interface_header(head, rest):
                 continue
             kind = "generate_messages_cpp"
         for name in include.targets:
@@ -98,6 +101,15 @@ def _find_orders(package) -> dict[str, set[str]]:
                     stack.append(item)
         reached[name] = seen
     return reached
+
+
+def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:
+    """True for the header of an interface whose package is not released here, so that it is built along with this one
+    from elsewhere."""
+    head, _, rest = header.partition("/")
+    if view.available(head) or "/" in rest or not rest.endswith(".h") or not _component(package, head):
+        return False
+    return interface_of(view, header) is not None
 
 
 def _component(package, name: str) -> bool:

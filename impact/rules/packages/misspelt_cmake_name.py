@@ -23,6 +23,7 @@ Not reported
     that resemble a released package of plain CMake whose configurations are not known.
 """
 
+from ...model.cmake.links import stops_at_names
 from ...model.misspelling import SpellingIndex
 from ...model.view import TargetView
 from ...model.workspace import Package
@@ -38,11 +39,14 @@ from ..rule import Diagnostic, Doubt, Replace, Text, rule
 def misspelt_cmake_name(view: TargetView, package: Package):
     declared = view.declared(package)
     found = {f.name for f in package.build.found}
+    prefixes = {f.prefix for f in package.build.found if f.prefix}
     near = None
-    for at, name, required, conditions, exact, exported in _named(package):
+    for at, name, required, conditions, exported in _named(view, package):
         if package.name in view.workspace.find_modules.get(name, ()):
             continue
         if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
+            continue
+        if name in prefixes:
             continue
         if near is None:
             near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
@@ -53,7 +57,7 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             fix = (Replace(at.path, at.line, at.column, name, " ".join(halves)),)
             yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
             continue
-        meant = near.nearest(name) if exact else None
+        meant = near.nearest(name)
         if meant is not None and _may_install_any(view, meant):
             continue
         if meant is not None and meant != name and view.target.ever_released(name) is False:
@@ -69,17 +73,17 @@ def _may_install_any(view: TargetView, name: str) -> bool:
     return outside and view.target.build_type(name) == "cmake" and not view.providers.cmake(name)
 
 
-def _named(package):
+def _named(view: TargetView, package: Package):
     for f in package.build.found:
         if f.how in ("find_package", "catkin") and f.name != "catkin":
-            yield f.at, f.name, f.required or f.how == "catkin", f.conditions, True, False
+            yield f.at, f.name, f.required or f.how == "catkin", f.conditions, False
     for e in package.build.exports:
         if e.how in ("ament_export_dependencies", "catkin_depends"):
-            yield e.at, e.item, False, e.conditions, True, e.how == "ament_export_dependencies"
+            yield e.at, e.item, False, e.conditions, e.how == "ament_export_dependencies"
     for target in package.build.targets:
         for link in target.links:
             if link.how == "ament" and "$" not in link.item:
-                yield link.at, link.item, False, link.conditions, False, False
+                yield link.at, link.item, stops_at_names(view), (*target.conditions, *link.conditions), False
 
 
 def _run_together(name: str, names) -> tuple[str, str] | None:

@@ -2,7 +2,8 @@
 
 What it does
     Reports variables such as `Eigen3_INCLUDE_DIR` that no find_package sets, one edit or case away from one that a
-    find_package of the same package does set.
+    find_package of the same package does set; and others in what is installed, linked or added that nothing sets, where
+    one whose name has a word more or less is set.
 
 Why it breaks
     CMake takes an unknown variable as empty and says nothing: an include folder or a library is missing later on.
@@ -46,6 +47,7 @@ _SUFFIXES = (
     group="misspelt-cmake-name",
     texts={
         "variable": Text("nothing sets `{subject}`; find_package({found}) is called", "write `{replacement}`"),
+        "alike": Text("nothing sets `{subject}`, but `{variable}` is set", "write `{replacement}`"),
         "other variable": Text(
             "find_package({found}) sets `{variable}`, so `{subject}` is empty", "write `{replacement}`"
         ),
@@ -57,6 +59,12 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
     seen = set()
     for use in package.build.uses:
         if use.name in seen or use.kind != "variable" or not view.active(use.conditions):
+            continue
+        if use.alike:
+            seen.add(use.name)
+            fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{use.alike}}}"),)
+            data = {"variable": use.alike, "replacement": f"${{{use.alike}}}"}
+            yield Diagnostic(use.at, use.name, package.name, data, "alike", (Doubt.INCOMPLETE,), fix=fix)
             continue
         for suffix in _SUFFIXES:
             if use.name.endswith(suffix):

@@ -1,8 +1,9 @@
 """nonexistent-export: a package exports an include directory, a library or a name that does not exist.
 
 What it does
-    Compares what a package exports with what is there: include directories that do not exist, libraries that no
-    command makes or that are not installed, and system libraries under a name whose variables nothing sets.
+    Compares what a package exports with what is there: include directories that do not exist or whose headers no rule
+    installs, libraries that no command makes or that are not installed, and system libraries under a name whose
+    variables nothing sets.
 
 Why it breaks
     The package's own configuration stops, or that of every package that finds it: the exported configuration names a
@@ -11,7 +12,8 @@ Why it breaks
 Severity
     error where the package's own configuration stops (an include directory that does not exist), for a library of its
     own that catkin_package() exports and no command makes, and for a library that is exported and not installed;
-    warning where dependants are not linked to it, or a name in DEPENDS is misspelt; note for other names in DEPENDS.
+    warning where dependants are not linked to it, for headers that are not installed, or a misspelt name in DEPENDS;
+    note for other names in DEPENDS.
 
 Example
     ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
@@ -20,7 +22,8 @@ Use instead
     ament_export_libraries(arm_controller)
 
 Not reported
-    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full.
+    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full; headers that no
+    rule installs where the package offers no library and nobody in the workspace includes them.
 """
 
 import posixpath
@@ -32,6 +35,7 @@ from ...model.workspace import Package
 from ...targets.providers.library import variables
 from ..rule import Diagnostic, Doubt, Text, rule
 from .ament_exports import list_installed_targets, read_ament_exports
+from .install_rules import is_installed
 
 
 @rule(
@@ -40,6 +44,10 @@ from .ament_exports import list_installed_targets, read_ament_exports
         "directory": Text(
             "the exported include directory `{directory}` does not exist, so catkin stops",
             "create it, or drop INCLUDE_DIRS",
+        ),
+        "no header": Text(
+            "`{directory}` is exported as include directory, but no install rule takes its headers",
+            "install(DIRECTORY {directory}/ DESTINATION {place})",
         ),
         "no target": Text(
             "the exported library `{subject}` is not a target of `{package}`", "export the library's target name"
@@ -61,6 +69,7 @@ from .ament_exports import list_installed_targets, read_ament_exports
 def nonexistent_export(view: TargetView, package: Package):
     if package.build.catkin_package is not None:
         yield from _list_directories(view, package)
+        yield from _list_without_headers(view, package)
         yield from _list_of_catkin(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
@@ -81,6 +90,25 @@ def _list_directories(view: TargetView, package):
         if view.workspace.is_unread(f"{package.path}/{inside}" if package.path else inside):
             continue  # a submodule that is not checked out is a folder all the same
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
+
+
+def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Include directories of the source space that have headers, none of which an install rule takes."""
+    installs = [i for i in package.build.installs if view.active(i.conditions)]
+    exports = [e for e in package.build.exports if view.certain(e.conditions)]
+    libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
+    offers = any(e.how == "libraries" and e.item in libraries for e in exports)
+    if not offers and package.name not in view.workspace.includers:
+        return  # nobody is there for the headers
+    if package.build.unresolved or any("$" in item for i in installs for item in i.items):
+        return
+    for export in exports:
+        folder = posixpath.normpath(export.item) if export.how == "include_dirs" else "$"
+        headers = [path for path in package.digest.headers if path.startswith(f"{folder}/")]
+        if not headers or any(is_installed(package, installs, path) for path in headers):
+            continue
+        data = {"directory": folder[len(package.path) :].lstrip("/"), "place": "${CATKIN_GLOBAL_INCLUDE_DESTINATION}"}
+        yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
 
 
 def _list_of_catkin(view: TargetView, package):

@@ -1,8 +1,8 @@
-"""package-linked-by-name: a target links the bare name of a package that has no library or target called so.
+"""package-linked-by-name: a target links the bare name of a package that has no library.
 
 What it does
-    Reports names of packages in target_link_libraries() that CMake finds, and that neither export a target nor install
-    a library called so.
+    Reports names of packages in target_link_libraries() that CMake finds, and that have no compiled library and export
+    no target called so.
 
 Why it breaks
     CMake hands what is no target to the linker, which stops: cannot find -lname.
@@ -17,7 +17,7 @@ Use instead
     target_link_libraries(arm pluginlib::pluginlib)
 
 Not reported
-    Packages whose exports are not known; names that a system library may have.
+    Packages of catkin; packages whose exports are not known; names that a system library may have.
 """
 
 from ...model.view import TargetView
@@ -27,15 +27,17 @@ from ..rule import Diagnostic, Text, doubts_of_place, rule
 
 @rule(
     texts=Text(
-        "`{target}` links `{subject}`, but that package has no library of this name",
+        "`{target}` links `{subject}`, but that package has no library",
         "[[link `{replacement}`]]",
     ),
 )
 def package_linked_by_name(view: TargetView, package: Package):
     own = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
-    found = {f.name for f in package.build.found if f.how in ("find_package", "catkin", "ament_auto")} - own
+    found = {f.name for f in package.build.found if f.how in ("find_package", "ament_auto")} - own
     seen = set()
-    for target in package.build.targets if found and not package.build.unresolved else ():
+    if package.build_type != "ament_cmake" or package.build.unresolved:
+        return
+    for target in package.build.targets if found else ():
         if target.static or target.kind not in ("executable", "library", "module", "test"):
             continue
         for link in target.links:
@@ -53,14 +55,15 @@ def package_linked_by_name(view: TargetView, package: Package):
 
 
 def _list_exported(view: TargetView, name: str) -> list[str] | None:
-    """The targets and libraries that a package has for others; None where these are not all known."""
+    """The targets that a package without compiled libraries has for others; None for any other package."""
     if view.target.resolve(name) is not None or view.providers.installed_cmake(name):
         return None
     own = view.workspace.packages.get(name)
     if own is not None:
-        names = [t.export_name or t.name for t in own.build.targets] + [e.item for e in own.build.exports]
-        return None if own.build.unresolved or any("$" in one for one in names) else names
+        compiled = own.build.unresolved or any(t.kind not in ("interface", "custom", "test") for t in own.build.targets)
+        return None if compiled else [t.export_name or t.name for t in own.build.targets if t.kind == "interface"]
     offer = view.offers.package(name)
     if offer is None or not offer.exact or any(part in ("targets", "libraries") for part, _ in offer.build.unknown):
         return None
-    return [*(target.name for target in offer.build.targets), *offer.build.libraries]
+    compiled = offer.build.libraries or any(target.kind != "interface" for target in offer.build.targets)
+    return None if compiled else [target.name for target in offer.build.targets]

@@ -33,11 +33,12 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
 def _find_undeclared(view: TargetView, package: Package) -> Undeclared:
     closure, declared = view.closure(package), view.declared(package)
     found = Undeclared({}, {})
+    elsewhere = {d.name for d in package.manifest.dependencies if not present(view, d.name)}  # for other distros
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
         name = name_to_declare(view, need)
-        if name is not None and name != package.name:
+        if name is not None and name != package.name and name not in elsewhere:
             kind = found.borrowed if view.answered(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
@@ -73,7 +74,7 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
     repairs."""
     if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
         return ()
-    if circular(view, package, name):
+    if circular(view, package, name) or not present(view, name):
         return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 

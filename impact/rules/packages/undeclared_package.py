@@ -30,7 +30,7 @@ Use instead
 Not reported
     What a declared package brings (dependency-by-chance reports what is there by chance alone); code that is switched
     off on the target; nodes of other workspaces that start only under an argument; names that nobody is known to
-    provide (they are counted as unresolved).
+    provide (they are counted as unresolved), unless the form of the use says that a package is meant.
 """
 
 from ...model.view import TargetView, weight
@@ -45,8 +45,10 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 )
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
-    # Of the many things that a package runs with and does not declare, the first few are reported.
-    firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
+    # Of the many things that a package runs with and does not declare, the first few are reported, best such as the
+    # target has.
+    firsts = [(min(needs, key=weight), name) for name, needs in missing.items()]
+    firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
         at_run_time = first.how not in (*ASKED, "include")

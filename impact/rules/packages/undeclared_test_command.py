@@ -43,7 +43,7 @@ def undeclared_test_command(view: TargetView, package: Package):
         return
     reported = set()
     for use in package.build.uses:
-        name = _find_owners(view).get(use.name) if use.kind == "command" else None
+        name = find_test_commands(view).get(use.name) if use.kind == "command" else None
         if name in (None, package.name, *reported) or not view.active(use.conditions) or not present(view, name):
             continue
         reported.add(name)
@@ -60,19 +60,18 @@ def undeclared_test_command(view: TargetView, package: Package):
         )
 
 
-def _find_owners(view: TargetView) -> dict[str, str]:
+def find_test_commands(view: TargetView) -> dict[str, str]:
     """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
-    ament_cmake_test, in the newest version that is stored."""
+    ament_cmake_test."""
     known = view.worked_out.get(("test commands", ""))
     if known is None:
-        known = view.worked_out["test commands", ""] = {}
-        for name in sorted(name for name in view.target.released_names() if "ament_cmake" in name):
-            history = view.offers.history(name)
-            needed = view.target.dependencies(name) or ()
-            if history is None or not any(d.name == _TESTS and d.kind != "test" for d in needed):
-                continue
-            build = history.build(history.versions[-1])
-            known.update(dict.fromkeys(build.commands if build is not None else (), name))
+        known = view.worked_out["test commands", ""] = {
+            command: name
+            for command, owners in view.providers.commands.get(view.target.ros, {}).items()
+            for name in owners.split()
+            if "ament_cmake" in name
+            and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
+        }
     return known
 
 

@@ -2,8 +2,9 @@
 
 What it does
     Reports packages of ament that install headers and a library and export neither include directories nor a target,
-    where another package of the workspace includes them, and packages of headers alone whose installed headers include
-    a system library off the compiler's path that they do not export.
+    where another package of the workspace includes them, or only the include directories of a library that nothing in
+    the package links or loads, and packages of headers alone whose installed headers include a system library off the
+    compiler's path that they do not export.
 
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".
@@ -38,6 +39,10 @@ from .ament_exports import AmentExports, exports_something, list_installed_targe
             "`{package}` installs headers but exports neither include directories nor a target",
             "call ament_export_targets or ament_export_include_directories",
         ),
+        "library": Text(
+            "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
+            "call ament_export_targets or ament_export_libraries",
+        ),
         "include directory": Text(
             "an installed header includes `{header}`, but the include directory of `{subject}` is not exported",
             "export its package, or its include directories",
@@ -49,6 +54,7 @@ def unexported_include_directory(view: TargetView, package: Package):
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_off_path(view, package, ament)
+        yield from _list_without_library(view, package, ament)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -70,6 +76,29 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         return
     subject = "ament_export_include_directories"
     yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
+
+
+def _list_without_library(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+    """Libraries that are there for dependants alone, and of which these get the headers."""
+    if "ament_export_include_directories" not in ament.hows or package.build.unresolved or package.digest.registered:
+        return
+    if any(e.how in _OFFERS or "$" in e.item for e in ament.exports):
+        return
+    installed = list_installed_targets(package)
+    public = frozenset(package.digest.public_headers)
+    linked = {link.item for target in package.build.targets for link in target.links}
+    headers = {name for path, names in package.digest.source_targets if path in public for name in names}
+    for target in package.build.targets:
+        if target.kind != "library" or target.name not in installed & headers - linked:
+            continue
+        if view.certain(target.conditions):
+            yield Diagnostic(target.at, target.name, package.name, kind="library", doubts=(Doubt.DISTURBS,))
+
+
+# What tells dependants about a library, or loads it.
+_OFFERS = frozenset(
+    {"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "plugin_description"}
+)
 
 
 # System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by

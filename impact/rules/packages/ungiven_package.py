@@ -25,6 +25,7 @@ Not reported
 """
 
 import re
+from collections.abc import Set
 
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import TargetView
@@ -71,11 +72,15 @@ def ungiven_package(view: TargetView, package: Package):
         for target in include.targets:
             if target not in reach:
                 items = _find_given(targets, target)
+                if items is not None:
+                    items |= _list_of_interfaces(package, items)
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
+                if any(item in targets and targets[item].kind == "generated" for item in items or ()):
+                    given.update(name for made in package.build.generated for name, _ in made.dependencies)
                 reach[target] = (
                     None if items is None else (view.spread(s for n in given if n for s in (n, n.lower())), hiding)
                 )
@@ -95,6 +100,16 @@ def ungiven_package(view: TargetView, package: Package):
 
 
 _VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
+
+
+def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
+    """The packages of the interfaces that those of the package itself rest on, whose targets bring them along."""
+    return {
+        name
+        for made in package.build.generated
+        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
+        for name, _ in made.dependencies
+    }
 
 
 def _find_given(targets, name: str) -> set[str] | None:

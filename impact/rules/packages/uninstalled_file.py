@@ -26,9 +26,10 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
+from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import has_only_data, is_installed, list_installing, list_references
+from .install_rules import is_installed, list_installing, list_references
 
 
 @rule(
@@ -44,13 +45,14 @@ from .install_rules import has_only_data, is_installed, list_installing, list_re
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
         "script": Text("`{subject}` is started by a launch file but is not installed", "{how}"),
+        "beside": Text("`{subject}` is not installed, although other programs beside it are", "{how}"),
     },
 )
 def uninstalled_file(view: TargetView):
     references = list_references(view)
     for package, installs in list_installing(view):
         used = references.get(package.name, {})
-        if has_only_data(package, installs):
+        if not installs and package.build_type == "catkin" and not package.build.targets:
             yield from _list_nothing(package, opened=bool(used))
         else:
             yield from _list_opened(package, installs, used.get("file", set()))
@@ -87,10 +89,15 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
 
 
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
-    """Scripts that a launch file starts and no rule installs."""
-    for path in package.digest.scripts:
-        name = posixpath.basename(path)
-        if name in scripts and not is_installed(package, installs, path):
+    """Scripts that a launch file starts, or that lie beside programs that are installed, and that no rule installs."""
+    programs = [item for i in installs if i.kind == "programs" for item in i.items]
+    folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
+    for path in (*package.digest.scripts, *package.digest.shells):
+        name, folder = posixpath.basename(path), posixpath.dirname(path)
+        beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
+        if (name in scripts or beside) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
-            how = "catkin_install_python(PROGRAMS ...)" if package.build_type == "catkin" else how
-            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, "script", (Doubt.DISTURBS,))
+            if package.build_type == "catkin" and path not in package.digest.shells:
+                how = "catkin_install_python(PROGRAMS ...)"
+            kind = "script" if name in scripts else "beside"
+            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,))

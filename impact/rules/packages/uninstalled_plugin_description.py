@@ -1,11 +1,13 @@
-"""uninstalled-plugin-description: an exported description of plugins does not exist or is not installed.
+"""uninstalled-plugin-description: a description of plugins does not exist, is not installed or is not exported.
 
 What it does
     Looks up the plugin descriptions that `<export>` of package.xml names with `${prefix}`: the files exist, and in
-    packages of catkin an install rule takes them.
+    packages of catkin an install rule takes them. A description of plugins in a library of the package has to be
+    exported.
 
 Why it breaks
-    pluginlib reads the description from the install space. Without it, loading any plugin of the package fails.
+    pluginlib reads the description from the install space, and asks package.xml where it lies (ROS 2: the index that
+    pluginlib_export_plugin_description_file() writes). Without it, loading any plugin of the package fails.
 
 Severity
     error where a library that the description names is installed, so that others expect its plugins; warning otherwise.
@@ -24,9 +26,10 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
+from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import has_only_data, is_installed, list_installing
+from .install_rules import is_installed, list_installing
 
 
 @rule(
@@ -38,12 +41,16 @@ from .install_rules import has_only_data, is_installed, list_installing
             "the exported plugin description `{subject}` is not installed",
             "install(FILES {file} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
         ),
+        "not exported": Text(
+            "`{subject}` describes plugins of `{library}` but is not exported, so pluginlib does not find them",
+            "{advice}",
+        ),
     },
 )
 def uninstalled_plugin_description(view: TargetView):
     for package, installs in list_installing(view):
-        if not has_only_data(package, installs):
-            yield from _list_descriptions(view, package, installs)
+        yield from _list_descriptions(view, package, installs)
+        yield from _list_not_exported(view, package, installs)
 
 
 def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnostic]:
@@ -75,3 +82,26 @@ def _is_shipped(view: TargetView, package, installs, description: str) -> bool:
     return any(
         item in names and view.certain(i.conditions) for i in installs if i.kind == "targets" for item in i.items
     )
+
+
+def _list_not_exported(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+    """Descriptions of plugins in libraries of the package that nothing exports and nothing installs."""
+    libraries = {t.output_name or t.name: t for t in package.build.targets if t.kind in ("library", "module")}
+    exports = {value.rpartition("/")[2] for e in package.manifest.exports for value in e.attributes.values()}
+    exports |= {posixpath.basename(e.item) for e in package.build.exports if e.how == "plugin_description"}
+    seen = {p.type for path, p in package.digest.plugins if posixpath.basename(path) in exports}
+    for path, plugin in package.digest.plugins:
+        name = posixpath.basename(plugin.library).removeprefix("lib").removesuffix(".so")
+        target = libraries.get(name)
+        if plugin.type in seen or path in seen or target is None or is_installed(package, installs, path):
+            continue
+        aside = role_of_folder(path[len(package.path) :].lstrip("/"))
+        if aside or not path.endswith(".xml") or not view.certain(target.conditions):
+            continue
+        seen.add(path)
+        base = plugin.base.partition("::")[0] or "BASE_PACKAGE"
+        catkin = package.build_type == "catkin"
+        advice = f'<{base} plugin="${{prefix}}/{path[len(package.path) :].lstrip("/")}"/> in package.xml'
+        advice = advice if catkin else f"pluginlib_export_plugin_description_file({base} {posixpath.basename(path)})"
+        data = {"library": name, "advice": advice}
+        yield Diagnostic(At(path, 1), posixpath.basename(path), package.name, data, "not exported", (Doubt.DISTURBS,))

@@ -2,10 +2,10 @@
 
 What it does
     Looks up the types of the fields of messages, services and actions that a package generates: those of other packages
-    are given to the generator (DEPENDENCIES), and messages of this name exist.
+    are given to the generator (DEPENDENCIES), messages of this name exist, and every line is a field or a constant.
 
 Why it breaks
-    The generator stops: it finds no definition of the field's type.
+    The generator stops: it finds no definition of the field's type, or cannot read the line.
 
 Severity
     error; warning for `Header` in ROS 1, which some generators know by themselves.
@@ -33,6 +33,10 @@ _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
 @rule(
     group="missing-interface-wiring",
     texts={
+        "no field": Text(
+            "a line that begins with `{subject}` is neither a field nor a constant, so the generator stops",
+            "write `package/Type name`",
+        ),
         "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),
         "other type": Text("`{owner}` has no message `{name}`", "correct the type"),
         "dependency": Text(
@@ -51,6 +55,8 @@ def unlisted_field_package(view: TargetView, package: Package):
     for interface in package.digest.interfaces:
         if interface.path not in listed:
             continue
+        for line, text in interface.definition.unread:
+            yield Diagnostic(At(interface.path, line), text.split()[0], package.name, kind="no field")
         for section in interface.definition.sections:
             for field in section.fields:
                 owner, _, name = field.type.rpartition("/")

@@ -9,7 +9,9 @@ Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
 
 Severity
-    error, since `rosdep install` stops; note for names never seen in public, which may belong to a private repository.
+    error, since `rosdep install` stops; note for names never seen in public, which may belong to a private repository;
+    warning for those of them that have the form of a key (`python3-x`, `libx-dev`, `x-pip`), or that one released
+    package is called after (`x_vendor`).
 
 Example
     <depend>Eigen3</depend>
@@ -26,7 +28,7 @@ import re
 from bisect import bisect_left
 from functools import lru_cache
 
-from ...model.misspelling import is_slip, nearest
+from ...model.misspelling import is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
@@ -63,21 +65,36 @@ def unresolvable_key(view: TargetView, package: Package):
         seen.add(name)
         if target.ever_released(name) or view.private(name):
             continue  # unreleased-package says it
-        guess = nearest(name, view.known_names)
-        guess = guess if guess and view.available(guess) else None
         at = view.manifest_place(package, dependency)
         if target.known_key(name):
             if not target.has_rosdep_rules():
                 continue
-            data = {"platform": target.platform, "replacement": guess or ""}
-            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
-        elif guess:
+            instead = next(iter(target.keys_instead(name)), "")
+            data = {"platform": target.platform, "replacement": instead}
+            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if instead else "no rule")
+        elif (guess := view.known_names.nearest(name)) and view.available(guess):
             fix = _fix(view, package, name, guess)
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
+        elif relative := _relative_of(view, name):
+            data = {"replacement": relative}
+            yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
-            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
+            # Names of this form are keys, which nobody else calls a package.
+            doubt = Doubt.AMBIGUOUS if _KEY.fullmatch(name) else Doubt.PRIVATE
+            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(doubt,))
+
+
+_KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip")
+
+
+def _relative_of(view: TargetView, name: str) -> str:
+    """The one package or key that a library's bare name may stand for, by what those of ROS and Debian are called;
+    empty where there is none, or several."""
+    found = [f"{name}_vendor", f"ros_{name}", f"lib{name}-dev", f"python3-{name}"] if len(name) > 3 else []
+    found = [known for known in found if view.available(known)]
+    return found[0] if len(found) == 1 else ""
 
 
 def _parts_of(view: TargetView, name: str) -> list[str]:

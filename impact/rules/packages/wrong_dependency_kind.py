@@ -1,8 +1,8 @@
 """wrong-dependency-kind: a dependency is declared, and not as what it is used for.
 
 What it does
-    Reports packages that built code needs and the manifest declares only for tests or for running, and packages needed
-    at run time that are declared for building or tests only.
+    Reports packages that built code needs and the manifest declares only for tests, for running or for dependants, and
+    packages needed at run time that are declared for building or tests only.
 
 Why it breaks
     A build without tests, or a machine that only builds, lacks the package. An installed robot lacks what the node
@@ -35,6 +35,7 @@ _AS_DEPEND = "declare it as `<{tag}>`"
 @rule(
     texts={
         "build, for tests": Text("`{subject}` is needed to build but is declared only for tests", _AS_DEPEND),
+        "build, for dependants": Text("`{subject}` is needed to build but is declared only for dependants", _AS_DEPEND),
         "build, to run": Text("`{subject}` is needed to build but is declared only to run", _AS_DEPEND),
         "run, for tests": Text("`{subject}` is needed to run but is declared only for tests", _AS_DEPEND),
         "run, to build": Text("`{subject}` is needed to run but is declared only to build", _AS_DEPEND),
@@ -52,14 +53,15 @@ def _diagnose_build(view: TargetView, package: Package, wrong: WrongKind) -> Dia
     need, name, kinds, _ = wrong
     old = package.manifest.format == 1
     # rosdep installs run dependencies along, so only the order of a clean build suffers
-    comes = (old or kinds <= {"exec"}) and name not in view.workspace.packages and kinds != {"test"}
+    comes = (old or kinds <= {"exec", "build_export"}) and name not in view.workspace.packages and kinds != {"test"}
     doubts = (Doubt.DISPENSABLE if comes else Doubt.LATE,)
-    if not doubts_of_chance(view, package, need):
-        doubts = ()  # the build farm does not install it
-    kind = "build, for tests" if kinds == {"test"} else "build, to run"
+    chance = doubts_of_chance(view, package, need)
+    if Doubt.LUCKY not in chance:
+        doubts = chance  # the build farm does not install it
+    kind = "for tests" if kinds == {"test"} else "to run" if "exec" in kinds else "for dependants"
     fix = fix_kind(view, package, name, "depend", kinds)
     data = {"tag": "build_depend" if old else "depend"}
-    return Diagnostic(need.at, name, package.name, data, kind, doubts, fix=fix)
+    return Diagnostic(need.at, name, package.name, data, f"build, {kind}", doubts, fix=fix)
 
 
 def _diagnose_run(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:

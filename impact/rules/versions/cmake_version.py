@@ -1,13 +1,15 @@
 """cmake-version: cmake_minimum_required does not fit a target's CMake.
 
 What it does
-    Compares the version with the CMake of the target's platform: newer than it has, or older than CMake 4 accepts.
+    Compares the version with the CMake of the target's platform: newer than it has, or older than CMake 4 accepts. Also
+    reports commands, modules and policies that only newer versions of CMake have.
 
 Why it breaks
-    CMake stops when a project asks for a newer CMake, and since 4.0 when it asks for compatibility with less than 3.5.
+    CMake stops when a project asks for a newer CMake or uses what that brought, and since 4.0 when it asks for
+    compatibility with less than 3.5.
 
 Severity
-    error: CMake stops at the first line.
+    error: CMake stops.
 
 Example
     cmake_minimum_required(VERSION 2.8.3)       # CMake 4 stops here
@@ -16,8 +18,11 @@ Use instead
     cmake_minimum_required(VERSION 3.5...3.28)
 
 Not reported
-    Versions that are not plain numbers, and platforms whose CMake is not known.
+    Versions that are not plain numbers, and platforms whose CMake is not known. Uses under a condition that may tell
+    versions apart, such as if(COMMAND ...), and find modules whose library installs a configuration of its own.
 """
+
+from collections.abc import Generator, Iterator
 
 from ...model.view import TargetView
 from ...model.workspace import Package
@@ -31,6 +36,7 @@ from ..rule import Diagnostic, Text, rule
             "`cmake_minimum_required` asks for CMake {subject}, but the target has {version}",
             help="ask for at most CMake {version}",
         ),
+        "feature": Text("`{subject}` is not available in CMake {version} (added in {since})", "do without it there"),
         "older": Text(
             "CMake {version} does not accept projects for CMake {subject}",
             help="write `cmake_minimum_required(VERSION 3.5)` or newer",
@@ -41,13 +47,35 @@ def cmake_version(view: TargetView, package: Package):
     cmake = view.target.library("cmake")
     if not cmake:
         return
+    newer = yield from _compare_minimum(package, cmake)
+    if not newer:
+        yield from _list_features(view, package, cmake)
+
+
+def _compare_minimum(package: Package, cmake: str) -> Generator[Diagnostic, None, bool]:
+    """What speaks against the version that is asked for; True where it is newer than the target's."""
     if package.build.minimum is None:
-        return
+        return False
     text, at = package.build.minimum
     low, _, high = text.partition("...")
     if not low[:1].isdigit():
-        return
+        return False
     if compare(low, cmake) > 0:
         yield Diagnostic(at, low, package.name, {"version": cmake}, kind="newer")
     elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
         yield Diagnostic(at, low, package.name, {"version": cmake}, kind="older")
+    return compare(low, cmake) > 0
+
+
+def _list_features(view: TargetView, package: Package, cmake: str) -> Iterator[Diagnostic]:
+    seen = set()
+    for use in package.build.uses:
+        if use.kind != "feature" or use.name in seen or at_least(cmake, use.context):
+            continue
+        if not view.certain(use.conditions):
+            continue
+        name = use.name.removeprefix("Find")
+        if name != use.name and (view.providers.installed_cmake(name) or view.workspace.find_modules.get(name)):
+            continue
+        seen.add(use.name)
+        yield Diagnostic(use.at, use.name, package.name, {"version": cmake, "since": use.context}, kind="feature")

@@ -24,7 +24,7 @@ Not reported
     compiler's default is below what they ask for: CMake then writes the higher one behind it.
 """
 
-from ...model.standards import find_standards, may_be_set_elsewhere
+from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhere
 from ...model.view import TargetView
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
@@ -80,13 +80,14 @@ def _ros1(view: TargetView, package, default: int | None):
             continue  # often beside std::experimental, under a test of the compiler
         told.add(need.package)
         own = need.package in view.workspace.packages
-        known = (need.sure and sure and not own) or Doubt.INCOMPLETE
+        known = need.sure and sure and not own and not may_be_raised(view, package, include.targets)
+        doubts = (known or Doubt.INCOMPLETE,)
         data = _data(include.path, need, fixed[0] if fixed else have)
         if fixed:
-            yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "set", (known,))
+            yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "set", doubts)
         else:
             data["platform"] = view.target.platform
-            yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", (known,))
+            yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", doubts)
 
 
 def _ros2(view: TargetView, package, default: int | None):

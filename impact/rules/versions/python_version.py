@@ -2,7 +2,8 @@
 
 What it does
     Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python. On
-    a target with Python 2 it reports what the newest distro's Python 3 does not accept.
+    a target with Python 2 it reports what the newest distro's Python 3 does not accept, and syntax of Python 3 in files
+    whose first line names `python`.
 
 Why it breaks
     The node stops with a SyntaxError before it runs.
@@ -24,7 +25,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
 from ..python_files import Refused, report_refused
-from ..rule import Text, rule
+from ..rule import Diagnostic, Text, doubts_of_place, rule
 
 
 @rule(
@@ -33,6 +34,7 @@ from ..rule import Text, rule
         "python 2": Text(
             "{subject} is a syntax error in Python {version}[[ ({horizon})]]", "use syntax that Python 3 accepts"
         ),
+        "python 3": Text("{subject} is a syntax error in Python 2, which runs it", "name python3 in its first line"),
         "newer": Text(
             "{subject} needs Python {needs}, but the target has {version}",
             "use syntax that the Python of every target accepts",
@@ -50,3 +52,8 @@ def python_version(view: TargetView):
                 yield Refused(use, use.what, "newer", use.needs)
 
     yield from report_refused(view, find)
+    for package in view if view.target.python_major == 2 else ():
+        for use in package.digest.syntax:
+            if use.needs != 2 and use.plain:
+                doubts = doubts_of_place(view, use.role)
+                yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)

@@ -25,7 +25,7 @@ from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
 from ..version import number_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
-from .rosdep import decode_rule, resolve_rule, split_platform
+from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
 
 if TYPE_CHECKING:
     from ..availability import Availabilities, Availability, Symbol
@@ -520,6 +520,17 @@ class DistroTarget(Target):
 
     def has_rosdep_rules(self) -> bool:
         return split_platform(self.platform)[0] in systems_of_rosdep(self._data) or bool(self._rules)
+
+    def keys_instead(self, key: str) -> tuple[str, ...]:
+        asked = "SELECT rule FROM rule WHERE key = ? AND os IN ('debian', 'ubuntu') ORDER BY ts DESC"
+        rules = [decode_rule(rule) for (rule,) in self._data.rows(asked, (key,))]
+        packages = dict.fromkeys(name for rule in rules for name in texts_of(rule))
+        # Modules of Python 3 are packaged under another name.
+        names = [n for name in packages for n in (name, re.sub(r"^python-", "python3-", name))]
+        found = dict.fromkeys(k for name in names for k in self.keys_of(name) if k != key)
+        # A number tells a release, which the archive may have no longer.
+        numbers = set(re.findall(r"\d+", key))
+        return tuple(k for k in found if numbers.issuperset(re.findall(r"\d+", k.removeprefix("python3"))))
 
     def key_names(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""

@@ -1,5 +1,7 @@
 """rosdep: which packages a key installs on an operating system, by the rules of REP 111."""
 
+from collections.abc import Iterator
+
 import msgspec
 
 from ..target import Resolution
@@ -69,3 +71,12 @@ def split_platform(platform: str) -> tuple[str, str]:
 def decode_rule(text: str | None) -> object:
     """A stored rule as Python value. None for a dropped key."""
     return None if text is None else msgspec.json.decode(text)
+
+
+def texts_of(rule: object) -> Iterator[str]:
+    """All texts of a rule's values: the packages that it installs on some release."""
+    if isinstance(rule, str):
+        yield rule
+    elif isinstance(rule, (dict, list)):
+        for value in rule.values() if isinstance(rule, dict) else rule:
+            yield from texts_of(value)

@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 
 from ....edges.memory import cached_method
+from ..platform import neighbours
 from ..snapshot import DATA, SnapshotError
 
 INFERRED = 1 << 15
@@ -25,14 +26,16 @@ class AptGraph(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Apt:
-    """The graph as one platform sees it. Of a platform whose index was not read, all that any other suite brings
-    counts: such an answer may say that something is there, and never that it is missing."""
+    """The graph as one platform sees it. Of a platform whose index was not read, all counts that the releases before
+    and after it bring, or any of them where one of these two was not read: such an answer may say that something is
+    there, and never that it is missing."""
 
     def __init__(self, graph: AptGraph, platform: str):
         self._graph = graph
         self._place = {name: place for place, name in enumerate(graph.packages)}
+        near = neighbours(platform, graph.suites)
         self._inferred = platform not in graph.suites
-        self._mask = INFERRED - 1 if self._inferred else 1 << graph.suites.index(platform)
+        self._mask = sum({1 << graph.suites.index(one) for one in near}) if all(near) else INFERRED - 1
 
     @cached_property
     def base(self) -> frozenset[str]:
@@ -43,6 +46,23 @@ class Apt:
     def brought_by(self, package: str) -> frozenset[str]:
         """A package and those that are installed along with it, as far as rosdep keys install them."""
         return frozenset(self._brought_by(package))
+
+    @cached_method
+    def bringing(self, packages: frozenset[str]) -> frozenset[str]:
+        """These packages and all that bring one of them along."""
+        mask = self._mask | (INFERRED if self._inferred else 0)
+        back: dict[int, list[int]] = {}
+        for place, others in self._graph.brings.items():
+            for other, bits in others:
+                if bits & mask:
+                    back.setdefault(other, []).append(place)
+        waiting = [place for name in packages if (place := self._place.get(name)) is not None]
+        found = set(waiting)
+        while waiting:
+            fresh = [place for place in back.get(waiting.pop(), ()) if place not in found]
+            found.update(fresh)
+            waiting += fresh
+        return packages.union(self._graph.packages[place] for place in found)
 
     def _brought_by(self, package: str) -> Iterator[str]:
         yield package

@@ -19,6 +19,7 @@ from ....edges.reach import Reach
 from ..snapshot import DATA, SnapshotError
 from ..version import at_least, parts
 from . import message_headers
+from .libraries import system_libraries
 from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
 
 if TYPE_CHECKING:
@@ -144,16 +145,18 @@ class Brought(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """A header of a package or library of some version, and what it includes."""
+    """A header of a package or library of some version, and what it includes. library: it is a system library's."""
 
     owner: str
     version: str
     includes: tuple[str, ...]
+    library: bool = False
 
 
 class HeadersOfMachine:
     """The headers of one machine, each answer kept. ros: 1 or 2. version: owner and whether it is a platform library to
-    its version. surfaces: what its ROS packages offer, by default the shipped file."""
+    its version. surfaces: what its ROS packages offer, by default the shipped file. platform: whose libraries it has,
+    besides those of the table; empty for no others."""
 
     def __init__(
         self,
@@ -161,8 +164,10 @@ class HeadersOfMachine:
         version: Callable[[str, bool], str | None],
         data: Includes | None = None,
         surfaces: Surfaces | None = None,
+        platform: str = "",
     ):
         self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
+        self._platform = platform
         self._known: dict[str, _Found | None] = {}
         self._holding: dict[tuple[Condition, ...], bool] = {}
         self._reach = Reach(self._look)
@@ -211,8 +216,8 @@ class HeadersOfMachine:
 
     def of_library(self, header: str) -> bool:
         """True when a platform library, and no ROS package, has a header here."""
-        owner = self.owner(header)
-        return owner is not None and owner[0] in self._data.table.libraries
+        found = self._find(header)
+        return found is not None and (found.library or found.owner in self._data.table.libraries)
 
     def knows(self, header: str) -> bool:
         """True when some version of a header was read, be it here or not."""
@@ -236,6 +241,7 @@ class HeadersOfMachine:
                 or self._in_surfaces(header)
                 or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
                 or self._made(header)
+                or self._in_libraries(header)
             )
         return self._known[header]
 
@@ -259,6 +265,12 @@ class HeadersOfMachine:
                 paths = dict.fromkeys(included.answer(one, header, standing) for one in active)
                 return _Found(package, version, tuple(paths))
         return None
+
+    def _in_libraries(self, header: str) -> _Found | None:
+        if not self._platform or header in self._data.owners_of:
+            return None
+        found = system_libraries().included(header, self._platform)
+        return _Found(*found, library=True) if found is not None else None
 
     def _gone(self, package: str, header: str) -> bool:
         """Whether the surface that stands for a package here lacks a header that others of its surfaces have."""
@@ -422,7 +434,10 @@ class HeadersOfMachine:
 
 def machine(target: Target) -> HeadersOfMachine:
     """The headers that a target has."""
-    return HeadersOfMachine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+    def version(name: str, library: bool) -> str | None:
+        return target.library(name) if library else target.version(name)
+
+    return HeadersOfMachine(target.ros, version, platform=target.platform)
 
 
 @cache
@@ -434,7 +449,7 @@ def machine_of(distro: str, ros: int, data: Includes | None = None) -> HeadersOf
     def version(owner: str, library: bool) -> str | None:
         return versions.get(owner) or (None if library else _packages_of(distro).version(owner))
 
-    return HeadersOfMachine(ros, version, known)
+    return HeadersOfMachine(ros, version, known, platform=_packages_of(distro).platform)
 
 
 @cache

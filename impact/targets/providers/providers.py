@@ -10,7 +10,7 @@ import sqlite3
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -142,9 +142,18 @@ class Providers:
     @cached_property
     def _find_modules(self) -> dict[str, dict[str, list[str]]]:
         """What CMake's find modules look for, see databuild/find_modules.py."""
-        path = self._data / "find_modules.json"
+        return self._read("find_modules.json", dict[str, dict[str, list[str]]])
+
+    @cached_property
+    def commands(self) -> dict[int, dict[str, str]]:
+        """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
+        databuild/commands.py."""
+        return self._read("commands.json", dict[int, dict[str, str]])
+
+    def _read(self, name: str, type_: Any) -> Any:
+        path = self._data / name
         try:
-            return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, list[str]]])
+            return msgspec.json.decode(path.read_bytes(), type=type_)
         except (OSError, msgspec.MsgspecError) as error:
             raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 

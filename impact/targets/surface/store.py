@@ -110,14 +110,14 @@ class SurfaceHistory:
         """The parameters that a version declares, with their defaults, as in Surface."""
         return tuple(sorted(self._values("parameter", version), key=_name))
 
-    def build(self, version: str) -> BuildSurface | None:
-        """What a version gives to CMake and at run time; None for one that is not stored."""
+    def build(self, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
+        """What a version gives to CMake and at run time; None for one that is not stored. of: these fields alone."""
         if version not in self.versions:
             return None
         from .surface import BuildSurface
 
         build: dict[str, list[Any]] = {}
-        for scope, value in self._values("build", version):
+        for scope, value in self._values("build", version, of=of):
             build.setdefault(scope, []).append(value)
         known = _fields_of_build()
         given = {
@@ -389,6 +389,10 @@ class Surfaces:
         (data,) = next(self._rows("SELECT data FROM parameters"))
         plain = zstandard.ZstdDecompressor().decompress(data)
         return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
+
+    def columns(self, query: str, value: str) -> list[Any]:
+        """The first column of a query's rows."""
+        return [row[0] for row in self._rows(query, value)]
 
     @cached_property
     def about(self) -> About:

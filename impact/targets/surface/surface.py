@@ -105,7 +105,8 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     system: what it brings by DEPENDS of catkin_package().
     commands: functions and macros; variables: besides those that every package has.
     standard: the C++ standard that its users need, 0 where nothing says. unknown: (part, why) of what cannot be told,
-    part being `targets`, `libraries`, `headers`, `commands`, `programs`, `launches` or `system`.
+    part being `targets`, `libraries`, `headers`, `commands`, `programs`, `launches` or `system`. pkgconfig: of system
+    libraries, names of pkg-config files, each with the libraries that it links behind it.
     """
 
     package: str
@@ -125,3 +126,4 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     launches: tuple[InstalledLaunchFile, ...] = ()
     headers: tuple[Header, ...] = ()
     unknown: tuple[tuple[str, str], ...] = ()
+    pkgconfig: tuple[str, ...] = ()

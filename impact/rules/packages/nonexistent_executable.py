@@ -1,0 +1,76 @@
+"""nonexistent-executable: a launch file starts a program that its package of the workspace does not have.
+
+What it does
+    Compares the nodes that launch files and scripts start in packages of the workspace with the programs that these
+    install into lib/<package>: entry points, targets, scripts and components.
+
+Why it breaks
+    `ros2 launch` and `ros2 run` stop with "executable not found".
+
+Severity
+    error for what is started in every run; warning under a condition; note in examples.
+
+Example
+    Node(package='sled_driver', executable='sled_drvier')
+
+Use instead
+    Node(package='sled_driver', executable='sled_driver')
+
+Not reported
+    Targets without an install rule, which are missing-install; packages whose CMake or setup code cannot be told
+    completely; tests, among which many a file of ROS 1 was left behind; packages of ROS 1.
+"""
+
+import difflib
+import posixpath
+from collections.abc import Iterator
+from fnmatch import fnmatchcase
+
+from ...model.package import ReferenceUse
+from ...model.python.programs import list_programs
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+
+
+@rule(
+    preview=True,
+    texts={
+        "": Text("`{upstream}` has no executable `{subject}`", "[[did you mean `{alike}`?]]"),
+        "folder": Text(
+            "`{subject}` is installed into `{folder}`, but nodes are looked for in `lib/{upstream}`",
+            "install it into lib/{upstream}",
+        ),
+    },
+)
+def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    if view.target.ros == 1:
+        return
+    for use in package.digest.references:
+        reference = use.reference
+        owner = view.workspace.packages.get(reference.package)
+        if use.role == "test" or reference.kind != "executable" or "$" in reference.name or not reference.name:
+            continue
+        if owner is not None:
+            yield from _judge(view, package, use, owner)
+
+
+def _judge(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
+    name = use.reference.name
+    programs = list_programs(owner)
+    if programs is None:
+        return
+    folders = {folder for known, folder in programs.items() if fnmatchcase(name, known) for folder in folder}
+    own = f"lib/{owner.name}"
+    if own in folders or "" in folders or any("$" in folder for folder in folders):
+        return
+    doubts = [*doubts_of_place(view, use.role)]
+    if use.reference.conditional:
+        doubts.append(Doubt.CONDITIONAL)
+    data = {"upstream": owner.name, "alike": "", "folder": ""}
+    if folders:
+        data["folder"] = min(folders)
+    else:
+        close = difflib.get_close_matches(posixpath.basename(name), [one for one in programs if "*" not in one], 1)
+        data["alike"] = close[0] if close else ""
+    yield Diagnostic(use.at, name, package.name, data, "folder" if folders else "", doubts=tuple(doubts))

@@ -1,0 +1,195 @@
+"""nonexistent-path: a build or a launch file reads a file that does not exist, or that a release does not hold.
+
+What it does
+    Reports sources of targets, files given to test commands, and what include() and add_subdirectory() read, where
+    neither the tree has the file nor the build makes it, and launch files, parameters and robot descriptions that a
+    launch file opens in the share folder of a package of the workspace. Of paths in CMake that are there, those that
+    lead out of the package's folder (`../common.cmake`), that begin in somebody's home folder, or below
+    `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the package.
+
+Why it breaks
+    CMake stops: "Cannot find source file", "could not find requested file". A release holds the package's folder
+    alone, and `${CMAKE_SOURCE_DIR}` is that folder where it is built alone, as by colcon, catkin_make_isolated and the
+    build farm. A launch file stops when it opens the file.
+
+Severity
+    error for what a build reads; warning for tests, under a condition, where something is downloaded for the build, for
+    what exists elsewhere, and for what launch files open; note for files outside of a package that was never released.
+
+Example
+    add_executable(sled_node src/sled_nod.cpp)
+
+Use instead
+    add_executable(sled_node src/sled_node.cpp)
+
+Not reported
+    Files that the build makes, and sources in folders that it may make; paths that are not known; folders that were not
+    read, as a submodule is; folders of headers in other packages, which need not exist.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...facts.condition import Condition
+from ...model.cmake.build import At, BuildTarget, for_tests
+from ...model.cmake.installed import copied_files
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, rule
+
+_CORRECT = "correct the path, or drop it"
+
+
+@rule(
+    texts={
+        "source": Text("`{by}` is built of `{subject}`, which does not exist", _CORRECT),
+        "test": Text("the test `{subject}` does not exist, so CMake stops", _CORRECT),
+        "read": Text("{by}() reads `{subject}`, which does not exist", _CORRECT),
+        "opened": Text("`{subject}` of `{by}` is opened but does not exist", "correct the path, or create the file"),
+        "above": Text(
+            "`{subject}` is found below `${{CMAKE_SOURCE_DIR}}` only where catkin_make builds the whole workspace",
+            "write `${{PROJECT_SOURCE_DIR}}/{subject}`",
+        ),
+        "outside": Text(
+            "`{subject}` lies outside of the package, so it is not there where `{package}` is built from its release",
+            "move it into the package, or into one that exports it",
+        ),
+        "machine": Text("`{subject}` exists on one machine alone", "look for it with find_package or find_path"),
+    },
+)
+def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    yield from _list_opened(view, package)
+    seen: set[str] = set()
+    for use in _list_paths(package):
+        kind, subject = _judge(view, package, use)
+        if not kind or not view.active(use.conditions):
+            continue
+        certain = view.certain(use.conditions)
+        if kind in ("outside", "machine", "read") and (subject in seen or not certain):
+            continue  # it may be asked for first
+        seen.add(subject)
+        tests = kind == "test" or for_tests(use.conditions)
+        doubts = (
+            Doubt.DISTURBS if kind in ("above", "outside", "machine") else None,
+            certain or Doubt.CONDITIONAL,
+            kind != "outside" or view.target.ever_released(package.name) or Doubt.DISPENSABLE,
+            not tests or (view.built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
+            all(t.kind not in ("external", "fetched") for t in package.build.targets) or Doubt.INCOMPLETE,
+        )
+        yield Diagnostic(use.at, subject, package.name, {"by": use.by}, kind, doubts)
+
+
+class _Path(NamedTuple):
+    """A path in CMake. how: `source`, `test` or `read`, which have to exist, `install`, `link` or `include`. by: the
+    target or command that takes it."""
+
+    path: str
+    how: str
+    by: str
+    at: At
+    conditions: tuple[Condition, ...]
+
+
+def _list_paths(package: Package) -> Iterator[_Path]:
+    build = package.build
+    for read in build.read_elsewhere:
+        yield _Path(read.path, "read", read.command, read.at, read.conditions)
+    for target in build.targets:
+        guarded = dict(target.guarded)
+        for path in target.sources if target.kind in ("executable", "library", "module", "test") else ():
+            conditions = (*target.conditions, *guarded.get(path, ()))
+            yield _Path(path, "test" if _runs_file(target, path) else "source", target.name, target.at, conditions)
+        for link in target.links:
+            if link.how in ("link", "include"):
+                yield _Path(link.item, link.how, target.name, link.at, (*target.conditions, *link.conditions))
+    for path, at in build.include_dirs:
+        yield _Path(path, "include", "", at, ())
+    for install in build.installs:
+        for path in install.items if install.kind in ("files", "programs", "directory") else ():
+            yield _Path(path, "install", "", install.at, install.conditions)
+
+
+def _runs_file(target: BuildTarget, path: str) -> bool:
+    """True for a test whose only source is a file that it runs."""
+    return target.kind == "test" and target.sources == (path,) and not re.search(r"\.(?:c|cc|cpp|cxx)\Z", path)
+
+
+_HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
+
+
+def _judge(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
+    """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
+    path = posixpath.normpath(use.path)
+    if _HOME.match(path):
+        return "machine", path
+    if re.search(r"[$*?<>\[\]]", path) or path.startswith("/"):
+        return "", ""
+    above = _find_above(package, path)
+    if above:
+        return "above", above
+    if use.how in ("link", "include"):
+        return "", ""
+    if path.startswith("../") or (package.path and not f"{path}/".startswith(f"{package.path}/")):
+        is_there = path.startswith("../") or path in view.workspace.gathered.ids
+        is_there = is_there or any(path in other.folders for other in view.everyone())
+        return ("outside", posixpath.relpath(path, package.path or ".")) if is_there else ("", "")
+    file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
+    if use.how == "install" or (use.how == "read" and not file.endswith((".cmake", ".txt"))):
+        return "", ""
+    folder = posixpath.dirname(path)
+    if use.how == "source" and folder != package.path and folder not in package.folders:
+        return "", ""  # generators make folders of their own
+    return (use.how, path[len(package.path) :].lstrip("/")) if _is_absent(view, package, file) else ("", "")
+
+
+def _find_above(package: Package, path: str) -> str:
+    """The file of the package that a path means where its folder's name stands twice: below the package's folder as
+    CMAKE_SOURCE_DIR, and in the path itself. Relative to the package; empty for other paths."""
+    doubled = f"{package.path}/{posixpath.basename(package.path)}/" if package.path else f"{package.name}/"
+    inside = path[len(doubled) :] if path.startswith(doubled) and path not in package.files else ""
+    return inside if inside and posixpath.join(package.path, inside) in package.files else ""
+
+
+def _is_absent(view: TargetView, package: Package, path: str) -> bool:
+    """True for a path of the package that neither the tree has nor the build makes."""
+    if path in package.files or path in package.folders or path.endswith((".o", ".obj", ".a", ".so")):
+        return False
+    if view.workspace.is_unread(path) or any(path in other.files for other in view.everyone()):
+        return False
+    name = posixpath.basename(path)
+    if "." not in name and (name.isupper() or any(file.startswith(f"{path}.") for file in package.files)):
+        return False  # CMake tries the endings of sources; capitals are keywords
+    return not any(
+        made.rstrip("/").rpartition("/")[2] == name or (made.endswith("/") and path.startswith(made))
+        for made in package.build.made
+    )
+
+
+_OPENED = re.compile(r"\.(?:launch|launch\.(?:py|xml|yaml)|ya?ml|urdf|xacro|srdf|rviz)\Z")
+
+
+def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Files in share folders of the workspace that a launch file opens in any case."""
+    for use in package.digest.references:
+        r = use.reference
+        owner = view.workspace.packages.get(r.package)
+        if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:
+            continue
+        name = posixpath.normpath(r.name)
+        if not _OPENED.search(name) or "$" in name or name.startswith(".."):
+            continue
+        path = posixpath.join(owner.path, name)
+        known = owner.build.files and not owner.build.unresolved and f"{path}.in" not in owner.files
+        if known and _is_absent(view, owner, path) and not _is_renamed(owner, name):
+            yield Diagnostic(use.at, name, package.name, {"by": owner.name}, "opened", (Doubt.DISTURBS,))
+
+
+def _is_renamed(owner: Package, name: str) -> bool:
+    """Whether an install rule puts, or may put, a file to a place of the share folder."""
+    installs = [i for i in owner.build.installs if i.kind in ("files", "directory", "programs")]
+    if any("$" in text for i in installs for text in (i.destination, *i.items)):
+        return True
+    places = (to for i in installs for _, to in copied_files(i, i.destination, owner.digest.files))
+    return f"share/{owner.name}/{name}" in places

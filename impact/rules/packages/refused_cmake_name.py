@@ -1,0 +1,66 @@
+"""refused-cmake-name: CMake does not accept a name that it is given.
+
+What it does
+    Reports names that can never be right: find_package() of an imported target, a second target of a name, and targets
+    whose name holds a slash, those included that ament_python_install_package() makes of its argument.
+
+Why it breaks
+    CMake finds no package `a::b`, since no file of a configuration can be called so, and stops at a second target of a
+    name and at a slash in one.
+
+Severity
+    error where CMake is sure to stop; warning where the place is not certain to be reached, and for packages that are
+    not REQUIRED.
+
+Example
+    find_package(MANIF::manif REQUIRED)
+
+Use instead
+    find_package(manif REQUIRED)
+
+Not reported
+    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that are not known.
+"""
+
+from ...model.cmake.conditions import version_key
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ...targets.version import at_least
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+
+# From here on ament_python_install_package() makes custom targets. Source: commit 42b972e of ament_cmake.
+_MAKES_TARGETS = "1.1.0"
+
+
+@rule(
+    texts={
+        "target": Text("`{subject}` is a target; no package is called so", "look for the package that defines it"),
+        "twice": Text("the target `{subject}` is added a second time", "give one of the two another name"),
+        "slash": Text("the name of a target holds a slash: `{subject}`", "write it without one"),
+    },
+)
+def refused_cmake_name(view: TargetView, package: Package):
+    build = package.build
+    for found in build.found:
+        if found.how == "find_package" and "::" in found.name and view.active(found.conditions):
+            doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
+            yield Diagnostic(found.at, found.name, package.name, kind="target", doubts=doubts)
+    seen = set()
+    for name, at, conditions in build.repeated:
+        if name not in seen and view.active(conditions):
+            seen.add(name)
+            doubts = doubts_of_place(view, "build", conditions)
+            yield Diagnostic(at, name, package.name, kind="twice", doubts=doubts)
+    refused = ("custom", "executable", "library") if _minimum(package) >= (3,) else ("custom",)
+    slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
+    if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
+        slashed += [(i.destination, i.at, i.conditions) for i in build.installs if i.kind == "python"]
+    for name, at, conditions in slashed:
+        if "/" in name and "$" not in name and view.active(conditions):
+            yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
+
+
+def _minimum(package: Package) -> tuple[int, ...]:
+    """The version whose policies CMake follows; from 3.0 on it refuses a slash in any name (CMP0037)."""
+    lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
+    return version_key(upper or lower)

@@ -1,0 +1,71 @@
+"""unfound-command: a command of another package is called, and CMake never finds that package.
+
+What it does
+    Reports functions and macros that a released package is known to define where neither it nor anything that brings it
+    is found by the package that calls them.
+
+Why it breaks
+    CMake stops: "Unknown CMake command".
+
+Severity
+    error; warning where the call is not certain to be reached, where what is found is not known completely, and in ROS
+    1, where a workspace that is configured at once may have found the package before.
+
+Example
+    project(visualizer)
+    ament_package()                             # and no find_package(ament_cmake REQUIRED)
+
+Use instead
+    find_package(ament_cmake REQUIRED)
+
+Not reported
+    Commands that the tree defines; packages that find something whose dependencies are not known; commands for tests
+    that nothing declared brings (undeclared-test-command says it).
+"""
+
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from .undeclared_test_command import find_test_commands
+
+
+@rule(
+    group="missing-find-package",
+    texts=Text("`{subject}` comes from `{owner}`, which CMake does not find", "add find_package({owner} REQUIRED)"),
+)
+def unfound_command(view: TargetView, package: Package):
+    build, commands = package.build, view.providers.commands.get(view.target.ros, {})
+    calls = [use for use in build.uses if use.kind == "command" and use.name in commands]
+    if not calls or not build.project or any("find_package(" in reason for _, reason in build.unresolved):
+        return
+    names = {found.name for found in build.found if found.how in ("find_package", "catkin", "ament_auto")}
+    names.update(found.name for found in build.found if found.how == "ament_lint_auto")
+    if any(not view.cmake(name) for name in names):
+        return  # what a private package finds along is not known
+    reached = view.widest_spread(names) | view.roles.found_with(names) | {package.name}
+    seen = set()
+    for use in calls:
+        owners = commands[use.name].split()
+        if not view.active(use.conditions):
+            continue
+        if not reached.isdisjoint(owners) or not any(view.available(owner) for owner in owners):
+            continue
+        if owners == ["genmsg"] and build.generated:
+            continue  # missing-message-generation reports it
+        if use.name in find_test_commands(view) and view.closure(package).isdisjoint(owners):
+            continue
+        owner = _name_to_find(view, package, owners)
+        if owner not in seen:
+            seen.add(owner)
+            known = not build.unresolved and not view.list_unknown(frozenset(reached))
+            doubts = (*doubts_of_place(view, "build", use.conditions), known or Doubt.INCOMPLETE)
+            together = view.target.ros == 2 or Doubt.LUCKY
+            yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, doubts=(*doubts, together))
+
+
+def _name_to_find(view: TargetView, package: Package, owners: list[str]) -> str:
+    """The package that one would look for: an owner, or what is declared and brings it (ament_cmake)."""
+    declared = list(view.declared(package))
+    near = [name for name in declared if not view.spread([name]).isdisjoint(owners)]
+    near.sort(key=lambda name: (name not in owners, name != package.build_type))
+    return near[0] if near else owners[0]

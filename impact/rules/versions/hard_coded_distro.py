@@ -1,0 +1,68 @@
+"""hard-coded-distro: code names the folder of another distro than the one it is checked for.
+
+What it does
+    Reports paths below /opt/ros/<distro> in scripts, CMake code, launch files, Python and C++ of packages, and in
+    scripts of the workspace, where the distro is not the target's.
+
+Why it breaks
+    The folder is not there on a machine with the target's distro alone, or belongs to an installation that does not fit
+    it.
+
+Severity
+    warning; note in examples and documentation.
+
+Example
+    source /opt/ros/foxy/setup.bash
+
+Use instead
+    source /opt/ros/$ROS_DISTRO/setup.bash
+
+Not reported
+    Comments and messages; paths under a condition, or in files that ask for ROS_DISTRO or also name the target's distro;
+    files and folders that are called after another distro; distros of the other generation of ROS, which a bridge needs
+    beside the target's.
+"""
+
+import re
+from collections.abc import Iterator
+
+from ...facts.distros import DistroFile
+from ...model.cmake.build import At
+from ...model.package import role_of_folder
+from ...model.view import TargetView
+from ...targets.changes import DISTROS
+from ...targets.distro.known import known_distros
+from ...tree.paths import is_vendored
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    preview=True,
+    texts=Text("`{subject}` is hard-coded, but is not the folder of {distro}", help="take the distro from the environment variable ROS_DISTRO"),
+)
+def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
+    for package in view:
+        for path, file in package.digest.distros:
+            role = role_of_folder(path[len(package.path) :].lstrip("/")) or "run"
+            yield from _list_uses(view, path, file, package.name, role)
+    for path, file in view.workspace.distro_scripts.items():
+        yield from _list_uses(view, path, file, "", role_of_folder(path) or "run")
+
+
+def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role: str) -> Iterator[Diagnostic]:
+    """The first use of each distro in a file."""
+    own = view.target.distro
+    others = {known.name for known in known_distros() if known.ros == view.target.ros and known.name != own}
+    if own not in DISTROS or own in file.words.split() or is_vendored(path):
+        return
+    if any(word in DISTROS for word in re.split(r"[^a-z]+", path.lower())):
+        return
+    reported: set[str] = set()
+    for use in file.uses:
+        if use.distro in others and not use.tested and use.distro not in reported:
+            reported.add(use.distro)
+            doubts = (*doubts_of_place(view, role), Doubt.LATE)
+            yield Diagnostic(At(path, use.line, use.column), use.text, package, {"distro": own}, doubts=doubts)
+

@@ -1,0 +1,94 @@
+"""mixed-distros: a Dockerfile or CI job installs or sources a distro that its image cannot have.
+
+What it does
+    Compares the image that a stage of a Dockerfile or a CI job runs in, and the ROS_DISTRO that it is set to, with the
+    Debian packages `ros-<distro>-*` and the folders /opt/ros/<distro> that it names; and those packages with what the
+    distro has released.
+
+Why it breaks
+    "E: Unable to locate package", or "No such file or directory", when the image is built.
+
+Severity
+    warning: the workspace itself is built elsewhere too.
+
+Example
+    FROM ros:jazzy
+    RUN apt-get update && apt-get install -y ros-humble-nav2-bringup
+
+Use instead
+    FROM ros:jazzy
+    RUN apt-get update && apt-get install -y ros-jazzy-nav2-bringup
+
+Not reported
+    Stages and jobs in which a variable, a matrix or a condition decides; distros of the same platform, whose packages
+    can be installed side by side; packages that no distro has ever released, which may come from another archive.
+"""
+
+from collections.abc import Iterator
+from functools import cache
+
+from ...facts.distros import ContainerPart, DistroUse
+from ...model.cmake.build import At
+from ...model.workspace import Workspace
+from ...targets.distro.distro import DistroTarget
+from ...targets.distro.known import known_distros
+from ...targets.resolve import parse_image
+from ..rule import Diagnostic, Text, rule
+
+
+@rule(
+    scope="workspace",
+    severity="warning",
+    preview=True,
+    texts={
+        "": Text("`{subject}` does not exist in an image of {distro}", help="write `{instead}`"),
+        "never": Text("`{subject}` does not exist: {distro} has no release of {name}[[, which {last} has]]"),
+    },
+)
+def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
+    names = {known.name for known in known_distros()}
+    for path, file in workspace.containers.items():
+        reported: set[str] = set()
+        for part in file.parts:
+            own = _find_distro(part)
+            for use in part.uses:
+                if use.distro in names and use.text not in reported:
+                    for diagnostic in _judge(path, use, own):
+                        reported.add(use.text)
+                        yield diagnostic
+
+
+def _find_distro(part: ContainerPart) -> str:
+    """The one distro that a part runs with; empty where none or several are named, or something decides."""
+    if part.open:
+        return ""
+    images = (parse_image(image, known_distros()) for image in part.images)
+    found = {image[0] for image in images if image is not None}
+    names = {known.name for known in known_distros()}
+    distros = {distro for distro in part.distros if distro in names}
+    both = found | distros
+    return next(iter(both)) if len(both) == 1 and (found or not part.images) else ""
+
+
+def _judge(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
+    at = At(path, use.line, use.column)
+    if own and use.distro != own and _target(use.distro).platform != _target(own).platform:
+        data = {"distro": own, "instead": use.text.replace(use.distro, own, 1)}
+        yield Diagnostic(at, use.text, data=data)
+    elif use.text.startswith("ros-") and use.distro != "rolling":
+        name = use.text.removeprefix(f"ros-{use.distro}-")
+        target = _target(use.distro)
+        underscored = name.replace("-", "_")
+        last = target.last_distro(underscored)
+        if last and name not in _debian_names(use.distro):
+            yield Diagnostic(at, use.text, data={"distro": use.distro, "name": underscored, "last": last}, kind="never")
+
+
+@cache
+def _target(distro: str) -> DistroTarget:
+    return DistroTarget(distro)
+
+
+@cache
+def _debian_names(distro: str) -> frozenset[str]:
+    return frozenset(name.replace("_", "-") for name in _target(distro).released_names())

@@ -1,0 +1,203 @@
+"""System libraries as Debian packages them, by release: which library a header or CMake target is of, whether it is
+compiled, and how it is linked. Looked up in `data/libraries.sqlite` (databuild/debian.py), a library at a time.
+
+Of Ubuntu no packages were read. An LTS release takes what Debian has at the time, so a library there is neither older
+than in the Debian release before it nor newer than in the one after it: what both of these say holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
+from itertools import islice, pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import zstandard
+
+from ....edges.memory import cached_method
+from ..platform import neighbours
+from ..snapshot import DATA, SnapshotError
+from ..surface.store import StoredSurfacesError, Surfaces
+from .providers import default_providers
+
+if TYPE_CHECKING:
+    from ..surface.surface import BuildSurface
+
+NEAREST = 4
+"""How many of those that bring a header, the nearest first, are asked whether it is theirs."""
+_NAMED = ("cmake_names", "targets", "unknown")
+
+
+class Linking(NamedTuple):
+    """How a header's library is linked. compiled: its package has something to link; libraries: that, without `lib`.
+    names: CMake packages and targets, pkg-config files and variables that bring it."""
+
+    library: str
+    compiled: bool
+    libraries: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+class Including(NamedTuple):
+    """What a header of a version of a library includes."""
+
+    library: str
+    version: str
+    paths: tuple[str, ...]
+
+
+class Presence(NamedTuple):
+    """How a platform stands to a part of a library. here: None where its releases do not tell. version: the oldest that
+    the platform may have. lost: some version lacks it, and the one before that had it."""
+
+    library: str
+    here: bool | None
+    version: str
+    lost: bool
+
+
+class SystemLibraries:
+    """The shipped file. Raises SnapshotError when it cannot be read."""
+
+    def __init__(self) -> None:
+        try:
+            self._file = Surfaces(DATA / "libraries.sqlite")
+        except StoredSurfacesError as error:
+            raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+
+    def _first(self, query: str, value: str) -> str:
+        return next(iter(self._file.columns(query, value)), "")
+
+    @cached_method
+    def of_package(self, debian: str) -> str:
+        """The library that a Debian development package is of; empty where it was not read."""
+        return self._first("SELECT library FROM debian WHERE name = ?", debian)
+
+    @cached_method
+    def versions(self, library: str) -> dict[str, str]:
+        """The version of a library in each Debian release that was read, oldest first."""
+        told = self._first("SELECT versions FROM package WHERE name = ?", library)
+        found = dict(one.split("=") for one in told.split())
+        return {f"debian {suite}": version for suite, version in found.items()}
+
+    @cached_method
+    def packages(self, library: str) -> frozenset[str]:
+        """The development packages of a library."""
+        return frozenset(self._file.columns("SELECT name FROM debian WHERE library = ?", library))
+
+    def around(self, library: str, platform: str) -> tuple[str, str]:
+        """The versions between which a platform's lies; empty for one that is not known."""
+        known = self.versions(library)
+        before, after = neighbours(platform, known)
+        return known.get(before, ""), known.get(after, "")
+
+    @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
+    def build(self, library: str, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
+        """What a version gives to CMake and the linker. of: these fields alone."""
+        history = self._file.history(library, 0)
+        return history.build(version, of) if history is not None else None
+
+    @cached_method
+    def of_header(self, header: str) -> str:
+        """The library that has a header in some version; empty for none that was read."""
+        if stray := self._first("SELECT library FROM header WHERE name = ?", header):
+            return stray
+        providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
+        nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
+        return next((library for library in nearest if self._has(library, header)), "")
+
+    def _has(self, library: str, header: str) -> bool:
+        known = self._headers(library)
+        return any(path in known for path in _written(header, self._roots(library)))
+
+    @lru_cache(maxsize=256)  # noqa: B019
+    def _headers(self, library: str) -> frozenset[str]:
+        (data,) = self._file.columns("SELECT headers FROM package WHERE name = ?", library)
+        return frozenset(zstandard.ZstdDecompressor().decompress(data).decode().split("\n"))
+
+    def included(self, header: str, platform: str) -> Including | None:
+        """What a header includes in a platform's version, or in either of those between which that lies; None where
+        neither has it, one of them was not read, or it is of no library that was."""
+        library = self.of_header(header)
+        versions = self.around(library, platform) if library else ()
+        known = self._file.included(library, 0) if versions and all(versions) else None
+        found: dict[str, None] = {}
+        there = False
+        for version in versions if known is not None else ():
+            for path in _written(header, self._roots(library)):
+                if (written := known.written(path, version)) is not None:
+                    found.update((known.answer(one, path, version), None) for one in written)
+                    there = True
+                    break
+        return Including(library, versions[0], tuple(found)) if there else None
+
+    @cached_method
+    def _roots(self, library: str) -> tuple[str, ...]:
+        """The folders that flags name in any version."""
+        versions = dict.fromkeys(self.versions(library).values())
+        builds = (self.build(library, version, ("include_dirs",)) for version in versions)
+        return tuple(dict.fromkeys(root for build in builds if build is not None for root in build.include_dirs))
+
+    @cached_method
+    def linking(self, header: str, platform: str) -> Linking | None:
+        """How to link the library of a header; None where it is of no library that was read, or a release of it was
+        not. Of several versions the platform's counts, or the one that is nearest."""
+        library = self.of_header(header)
+        version = next(filter(None, self.around(library, platform)), "") if library else ""
+        build = self.build(library, version) if version else None
+        if build is None:
+            return None
+        paths = set(_written(header, build.include_dirs))
+        row = next((one for one in build.headers if one.include in paths), None)
+        if row is None:
+            return None
+        libraries = tuple(row.source.split())
+        mine = set(libraries)
+        configs = (one.split(" ") for one in build.pkgconfig)
+        names = (
+            *build.cmake_names,
+            *(target.name for target in build.targets),
+            *(name for name, *stems in configs if mine.intersection(stems)),
+            *build.variables,
+        )
+        return Linking(library, bool(libraries), libraries, names)
+
+    def target(self, name: str, platform: str, version_of: Callable[[str], str | None]) -> Presence | None:
+        """How a platform stands to a CMake target that a library exports in some version; None where none does.
+        version_of: the platform's version of a library, where that is known."""
+        library = self._first("SELECT library FROM target WHERE name = ?", name)
+        if not library:
+            return None
+        versions = dict.fromkeys(self.versions(library).values())
+        told = {one: _exports(build, name) for one in versions if (build := self.build(library, one, _NAMED))}
+        exact = version_of(library)
+        before, after = (exact, exact) if exact in told else self.around(library, platform)
+        states = {told.get(version) for version in (before, after) if version}
+        # What the oldest release lacks and a later one has came with that: it was not there before either.
+        complete = (before and after) or (after and told.get(after) is False)
+        here = states.pop() if complete and len(states) == 1 else None
+        lost = any(told[one] and told[two] is False for one, two in pairwise(told))
+        return Presence(library, here, before or after, lost)
+
+
+def _exports(build: BuildSurface, name: str) -> bool | None:
+    """Whether a build exports a target, None where that cannot be told."""
+    if any(target.name == name for target in build.targets):
+        return True
+    return None if any(part == "targets" for part, _ in build.unknown) or not build.cmake_names else False
+
+
+def _written(header: str, roots: tuple[str, ...]) -> Iterator[str]:
+    """A header as it is written, and as it lies below the folders that flags name."""
+    yield header
+    parts = header.split("/")
+    for place in range(1, len(parts)):
+        folder = "/".join(parts[:place])
+        if any(f"/{root}".endswith(f"/{folder}") for root in roots):
+            yield "/".join(parts[place:])
+
+
+@cache
+def system_libraries() -> SystemLibraries:
+    """The shipped libraries, one for each process."""
+    return SystemLibraries()

@@ -1,0 +1,130 @@
+"""System libraries: how Debian's packages of them are read, and what the shipped file answers."""
+
+import pytest
+from rosimpact.databuild.libraries import below, library_of_source, pkgconfig_of, read_cmake, refusal
+from rosimpact.impact.targets.platform import neighbours
+from rosimpact.impact.targets.providers.libraries import system_libraries
+
+
+@pytest.mark.parametrize(
+    ("source", "library"),
+    [
+        ("boost1.74", "boost"),
+        ("boost-defaults", "boost"),
+        ("ogre-1.12", "ogre"),
+        ("tinyxml2", "tinyxml2"),
+        ("libusb-1.0", "libusb-1.0"),  # libusb is another one
+        ("libusb", "libusb"),
+    ],
+)
+def test_a_library_is_a_source_package_without_its_version(source, library):
+    assert library_of_source(source, {"boost1.74", "boost1.81", "libusb", "libusb-1.0", "tinyxml"}) == library
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("#error use new.h instead\n", "use new.h instead"),
+        ('#ifndef OLD_H\n#define OLD_H\n#error "gone"\n#endif\n', "gone"),
+        ("#pragma once\n#error gone\n", "gone"),
+        ("#ifndef __cplusplus\n#error C++ only\n#endif\nclass A;\n", ""),
+        ("#ifndef OLD_H\n#define OLD_H\n#include <new.h>\n#endif\n", ""),
+        ("", ""),
+    ],
+)
+def test_a_header_of_nothing_but_error_refuses_who_includes_it(text, message):
+    assert refusal(text) == message
+
+
+def test_a_pkg_config_file_names_what_it_links_and_where_headers_lie():
+    text = b"prefix=/usr\nincludedir=${prefix}/include\nLibs: -L/usr/lib -lSDL2 -lm\nCflags: -I${includedir}/SDL2 -DX\n"
+    assert pkgconfig_of("usr/lib/x86_64-linux-gnu/pkgconfig/sdl2.pc", text) == ("sdl2", ("SDL2", "m"), ("SDL2",))
+
+
+def test_cmake_files_name_configurations_targets_and_variables():
+    config = b"set(YAML_CPP_LIBRARIES yaml-cpp)\nset(other 1)\n# add_library(no SHARED IMPORTED)\n"
+    targets = b"add_library(yaml-cpp::yaml-cpp SHARED IMPORTED)\nadd_library(yaml-cpp ALIAS yaml-cpp::yaml-cpp)\n"
+    folder = "usr/lib/cmake/yaml-cpp"
+    names, found, is_open, variables = read_cmake(
+        [(f"{folder}/yaml-cpp-config.cmake", config), (f"{folder}/yaml-cpp-targets.cmake", targets)]
+    )
+    assert (names, is_open, variables) == (("yaml-cpp",), False, ("YAML_CPP_LIBRARIES",))
+    assert {target.name: target.kind for target in found} == {"yaml-cpp::yaml-cpp": "library", "yaml-cpp": "imported"}
+    assert read_cmake([(f"{folder}/a.cmake", b"foreach(t x)\nadd_library(y::${t} SHARED IMPORTED)\n")])[2]
+
+
+@pytest.mark.parametrize(
+    ("path", "roots", "include"),
+    [
+        ("opencv4/opencv2/core.hpp", {"opencv4"}, "opencv2/core.hpp"),
+        ("SDL2/SDL.h", {"SDL2"}, "SDL.h"),
+        ("yaml-cpp/yaml.h", set(), "yaml-cpp/yaml.h"),
+    ],
+)
+def test_headers_are_included_below_the_folders_that_flags_name(path, roots, include):
+    assert below((path,), roots) == include
+
+
+DEBIAN = ("debian bullseye", "debian bookworm", "debian trixie")
+
+
+@pytest.mark.parametrize(
+    ("platform", "expected"),
+    [
+        ("debian bookworm", ("debian bookworm", "debian bookworm")),
+        ("ubuntu jammy", ("debian bullseye", "debian bookworm")),
+        ("ubuntu focal", ("", "debian bullseye")),
+        ("ubuntu resolute", ("debian trixie", "")),
+        ("fedora 40", ("", "")),
+    ],
+)
+def test_ubuntu_lies_between_two_releases_of_debian(platform, expected):
+    assert neighbours(platform, DEBIAN) == expected
+
+
+# -- what is shipped ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("target", "platform", "here", "lost"),
+    [
+        ("yaml-cpp::yaml-cpp", "ubuntu focal", False, False),
+        ("yaml-cpp::yaml-cpp", "ubuntu jammy", False, False),
+        ("yaml-cpp::yaml-cpp", "ubuntu noble", None, False),  # it came between Debian 12 and 13
+        ("yaml-cpp::yaml-cpp", "debian trixie", True, False),
+        ("fmt::fmt", "ubuntu jammy", True, False),
+        ("fmt::fmt", "fedora 40", None, False),
+    ],
+)
+def test_a_target_is_there_where_the_releases_around_a_platform_agree(target, platform, here, lost):
+    found = system_libraries().target(target, platform, lambda library: None)
+    assert found is not None and (found.here, found.lost) == (here, lost)
+
+
+def test_a_version_that_was_read_tells_more_than_those_around_it():
+    found = system_libraries().target("yaml-cpp::yaml-cpp", "ubuntu noble", {"yaml-cpp": "0.8.0"}.get)
+    assert found is not None and found.here
+
+
+@pytest.mark.parametrize(
+    ("header", "compiled", "libraries", "name"),
+    [
+        ("yaml-cpp/yaml.h", True, ("yaml-cpp",), "YAML_CPP_LIBRARIES"),
+        ("tinyxml2.h", True, ("tinyxml2",), "tinyxml2::tinyxml2"),
+        ("curl/curl.h", True, ("curl",), "libcurl"),
+        ("opencv2/calib3d.hpp", True, ("opencv_calib3d",), "OpenCV"),
+        ("nlohmann/json.hpp", False, (), "nlohmann_json::nlohmann_json"),
+        ("Eigen/Core", False, (), "Eigen3::Eigen"),
+        ("SDL2/SDL.h", True, None, "SDL2::SDL2"),
+    ],
+)
+def test_how_the_library_of_a_header_is_linked(header, compiled, libraries, name):
+    found = system_libraries().linking(header, "ubuntu noble")
+    assert found is not None and found.compiled is compiled
+    assert libraries is None or found.libraries == libraries
+    assert name in found.names
+
+
+def test_headers_of_ros_and_of_the_compiler_are_of_no_library():
+    assert system_libraries().linking("rclcpp/rclcpp.hpp", "ubuntu noble") is None
+    assert system_libraries().linking("stdio.h", "ubuntu noble") is None
