@@ -32,7 +32,8 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     that shows itself to be a floating point number or a string (a literal, or a variable that the file declares
     so), `<string>` for an object of class string, `<shared>` for a shared pointer to what the file has just made.
     names: a variable may stand between the type that `word` is and its arguments. after: matches right behind the
-    use. inside: `class` for what stands right in the body of a class. file: must be found in the file. unless: must
+    use. inside: `class` for what stands right in the body of a class, or what must be found in the head of that class
+    (behind its name, so that it is of its bases). file: must be found in the file. unless: must
     not be found in it; what begins with `#include` is looked for among the includes, which are blank elsewhere.
     """
 
@@ -274,7 +275,7 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
         checked = not (pattern.file or pattern.unless)
         for at, ahead in fitting[before]:
             types = _fits(pattern, text, at + len(word), ahead)
-            if types is None or (pattern.inside == "class" and not _in_class(text, at)):
+            if types is None or (pattern.inside and not _stands_inside(pattern.inside, text, at)):
                 continue
             conditions = () if scanned is None else scanned.under(at)
             if conditions is None:
@@ -364,13 +365,19 @@ def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
 _OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
 
 
-def _in_class(text: str, at: int) -> bool:
-    """Whether a place stands right in the body of a class, not in a function of it."""
+def _stands_inside(wanted: str, text: str, at: int) -> bool:
+    """Whether a place stands in the body of a class, or of one whose head has what an expression looks for."""
+    head = _class_around(text, at)
+    return bool(head) and (wanted == "class" or _compiled(wanted).search(head.partition(":")[2]) is not None)
+
+
+def _class_around(text: str, at: int) -> str:
+    """The head of the class in the body of which a place stands, not in a function of it; empty where there is none."""
     depth, position = 0, at
     while True:
         opened, closed = text.rfind("{", 0, position), text.rfind("}", 0, position)
         if opened == closed:
-            return False
+            return ""
         position = max(opened, closed)
         if closed > opened:
             depth += 1
@@ -378,7 +385,8 @@ def _in_class(text: str, at: int) -> bool:
             depth -= 1
         else:
             begins = max(text.rfind(end, 0, position) for end in ";{}") + 1
-            return bool(_OPENING_CLASS.search(text[begins:position]))
+            found = _OPENING_CLASS.search(text[begins:position])
+            return found.group() if found is not None else ""
 
 
 def declares_next(ahead: str) -> bool:

@@ -362,6 +362,22 @@ EXAMPLES = {
         "double a = command_interfaces_[0].get_optional().value();",
         "double a = command_interfaces_[0].get_value();",
     ),
+    "return_type configure(HardwareInfo)": (
+        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type configure(const hardware_interface::HardwareInfo & info) override; };",
+        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareInfo & info) override; };",
+    ),
+    "return_type start()": (
+        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type start() override; };",
+        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State & state) override; };",
+    ),
+    "return_type stop()": (
+        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type stop() override; };",
+        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State & state) override; };",
+    ),
+    "CallbackReturn on_init(HardwareInfo)": (
+        "class A : public hardware_interface::SystemInterface { hardware_interface::CallbackReturn on_init(const hardware_interface::HardwareInfo & info) override; };",
+        "class A : public hardware_interface::SystemInterface { hardware_interface::return_type configure(const hardware_interface::HardwareInfo & info) override; };",
+    ),
     "return_type update()": (
         "class A : public controller_interface::ControllerInterface { controller_interface::return_type update() override; };",
         "class A : public controller_interface::ControllerInterface { controller_interface::return_type update(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
