@@ -186,7 +186,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. stops: each
+    message(FATAL_ERROR) under conditions, with its text."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -212,6 +213,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
+    stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

@@ -149,6 +149,7 @@ class Interpreter:
         self.links: dict = {}
         self.catkin_package: At | None = None
         self.before_catkin_package: tuple[str, ...] = ()
+        self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -247,6 +248,7 @@ class Interpreter:
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
+            stops=tuple(self.stops),
         )
 
     def _project_by_variable(self) -> bool:
