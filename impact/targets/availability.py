@@ -241,12 +241,13 @@ class Availabilities:
         # CMake minds no case in names of commands, and neither do surfaces.
         name = symbol.name.lower() if side == "command" else symbol.name
         offered = offer.get(side, name)
+        if offered is None:
+            if self._has(offer, side, name):
+                return Availability(symbol, "present", package, offer.version)
+            if alike := _meant(offer, side, name):
+                return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
         if offered is None or not decides(offer, offered):
-            has = offered is None and self._has(offer, side, name)
-            if offered is None and not has and offer.exact and side in _STARTED and (alike := _meant(offer, side, name)):
-                if all(one != _BUILT[side][0] for one, _ in offer.build.unknown):
-                    return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
-            return Availability(symbol, "present" if has else "unknown", package, offer.version)
+            return Availability(symbol, "unknown", package, offer.version)
         state = _STATES[offered.state]
         sure = offered.sure
         if side in _BUILT:
@@ -402,7 +403,10 @@ def _alike(offer: PackageOffer, side: str, name: str) -> str:
 
 
 def _meant(offer: PackageOffer, side: str, name: str) -> str:
-    """What the target's version has and a name is a misspelling of: only the last part of it differs, by little."""
+    """What the target's version has and a name is a misspelling of: only the last part of it differs, by little. Empty
+    where not all that the version has is known."""
+    if not offer.exact or side not in _STARTED or any(one == _BUILT[side][0] for one, _ in offer.build.unknown):
+        return ""
     alike = _alike(offer, side, name)
     (head, tail), (other_head, other) = _split(name), _split(alike)
     near = head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT

@@ -201,7 +201,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
     that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
-    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads."""
+    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads. stops: each
+    message(FATAL_ERROR) under conditions, with its text."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -230,6 +231,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
+    stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

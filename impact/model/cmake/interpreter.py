@@ -158,6 +158,7 @@ class Interpreter:
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
         self.asked: dict[str, None] = {}
+        self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -260,6 +261,7 @@ class Interpreter:
             repeated=tuple(self.repeated),
             read_elsewhere=tuple(self.read_elsewhere),
             asked=tuple(self.asked),
+            stops=tuple(self.stops),
         )
 
     def _project_by_variable(self) -> bool:

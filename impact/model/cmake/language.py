@@ -169,7 +169,11 @@ def continue_(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
 @handles("message")
 def message(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """message(): FATAL_ERROR ends the run."""
-    return FATAL if args and args[0] == "FATAL_ERROR" else 0
+    if not args or args[0] != "FATAL_ERROR":
+        return 0
+    if not run.silent and run.inside(call.path) and run.conditions:
+        run.stops.append((run.place(call.at), "".join(args[1:])[:80], run.conditions))
+    return FATAL
 
 
 @handles("cmake_minimum_required", least=2)

@@ -89,8 +89,8 @@ def find_gone_package(
     view: TargetView, package: Package, use: ReferenceUse, upstream: str, subject: str
 ) -> Iterator[Diagnostic]:
     """Says that a launch file or parameter file names something of a package that the target does not have, where
-    no other rule does: package.xml does not declare it. Not of tests, and not in ROS 1, where releases carry many a launch
-    file that nobody starts any more."""
+    no other rule does: package.xml does not declare it. Not of tests, and not in ROS 1, where releases carry many a
+    launch file that nobody starts any more."""
     if view.target.ros == 1 or use.role == "test":
         return
     if not view.is_package(upstream) or upstream in view.workspace.packages or upstream in package.declared:

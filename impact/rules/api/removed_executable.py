@@ -33,7 +33,13 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rule
 from .diagnosis import (
-    GONE_PACKAGE, UPSTREAM, availability_texts, diagnose, find_gone_package, find_missing, is_of_another_distro,
+    GONE_PACKAGE,
+    UPSTREAM,
+    availability_texts,
+    diagnose,
+    find_gone_package,
+    find_missing,
+    is_of_another_distro,
 )  # fmt: skip
 
 

@@ -34,7 +34,12 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import (
-    GONE_PACKAGE, availability_texts, diagnose, find_gone_package, find_missing, is_of_another_distro,
+    GONE_PACKAGE,
+    availability_texts,
+    diagnose,
+    find_gone_package,
+    find_missing,
+    is_of_another_distro,
 )  # fmt: skip
 
 

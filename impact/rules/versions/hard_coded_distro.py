@@ -18,9 +18,9 @@ Use instead
     source /opt/ros/$ROS_DISTRO/setup.bash
 
 Not reported
-    Comments and messages; paths under a condition, or in files that ask for ROS_DISTRO or also name the target's distro;
-    files and folders that are called after another distro; distros of the other generation of ROS, which a bridge needs
-    beside the target's.
+    Comments and messages; paths under a condition, or in files that ask for ROS_DISTRO or also name the target's
+    distro; files and folders that are called after another distro; distros of the other generation of ROS, which a
+    bridge needs beside the target's.
 """
 
 import re
@@ -40,7 +40,10 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
     scope="target",
     severity="warning",
     preview=True,
-    texts=Text("`{subject}` is hard-coded, but is not the folder of {distro}", help="take the distro from the environment variable ROS_DISTRO"),
+    texts=Text(
+        "`{subject}` is hard-coded, but is not the folder of {distro}",
+        help="take the distro from the environment variable ROS_DISTRO",
+    ),
 )
 def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
     for package in view:

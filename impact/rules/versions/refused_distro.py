@@ -1,0 +1,44 @@
+"""refused-distro: CMakeLists.txt stops with an error on a target.
+
+What it does
+    Reports message(FATAL_ERROR) under conditions on the distro that surely hold on the target.
+
+Why it breaks
+    Configuring the package ends there, with the message of its author.
+
+Severity
+    error.
+
+Example
+    if("$ENV{ROS_DISTRO}" STREQUAL "humble")
+      add_compile_definitions(ROS_HUMBLE)
+    else()
+      message(FATAL_ERROR "unsupported distro")
+    endif()
+
+Use instead
+    if("$ENV{ROS_DISTRO}" STREQUAL "humble")
+      add_compile_definitions(ROS_HUMBLE)
+    endif()
+
+Not reported
+    Conditions that are not known to hold, and those that ask nothing of the distro.
+"""
+
+from collections.abc import Iterator
+
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, rule
+
+
+@rule(
+    preview=True,
+    texts=Text("CMakeLists.txt stops on {distro}: {message}", help="add a branch for {distro}"),
+)
+def refused_distro(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    for at, message, conditions in package.build.stops:
+        asks = any("ROS_DISTRO" in condition.text for condition in conditions)
+        if asks and view.certain(conditions):
+            data = {"distro": view.target.distro, "message": f"`{message}`" if message else "message(FATAL_ERROR)"}
+            yield Diagnostic(at, "FATAL_ERROR", package.name, data)
