@@ -468,7 +468,7 @@ class _Join:
                 interpreted.update(_scripts_run(facts))
             else:
                 data_words.append(getattr(facts, "words", ""))
-                if path.endswith((".yaml", ".yml")):
+                if kind in ("params", "launch_yaml"):
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
