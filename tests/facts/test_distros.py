@@ -1,7 +1,6 @@
 """Distros that files name: folders in code, and the stages and jobs of Dockerfiles and CI files."""
 
 import pytest
-
 from rosimpact.impact.facts.distros import extract, find_distros
 
 FOLDERS = [
