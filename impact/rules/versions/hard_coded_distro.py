@@ -20,9 +20,10 @@ Use instead
 Not reported
     Comments and messages; paths under a condition, or in files that ask for ROS_DISTRO or also name the target's
     distro; files and folders that are called after another distro; distros of the other generation of ROS, which a
-    bridge needs beside the target's.
+    bridge needs beside the target's; tests; scripts beside a Dockerfile, which run in its image.
 """
 
+import posixpath
 import re
 from collections.abc import Iterator
 
@@ -58,7 +59,10 @@ def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role
     """The first use of each distro in a file."""
     own = view.target.distro
     others = {known.name for known in known_distros() if known.ros == view.target.ros and known.name != own}
-    if own not in DISTROS or own in file.words.split() or is_vendored(path):
+    if own not in DISTROS or own in file.words.split() or is_vendored(path) or role == "test":
+        return
+    # What lies beside a Dockerfile is copied into its image, whose distro is not the target's.
+    if any(posixpath.dirname(other) == posixpath.dirname(path) for other in view.workspace.containers):
         return
     if any(word in DISTROS for word in re.split(r"[^a-z]+", path.lower())):
         return
