@@ -56,6 +56,8 @@ def list_undefined_functions(
 _GENERATED = frozenset(("action", "cfg", "msg", "srv"))
 # How modules end that protoc and Qt's tools write.
 _MADE = ("_pb2", "_pb2_grpc", "_rc", "_ui")
+_SHORTEST = 4
+"""Letters of a name that others begin with by no chance."""
 
 
 class _Modules:
@@ -81,8 +83,11 @@ class _Modules:
         return named.union(name for name in self._others if name not in inside and name not in self._by_name)
 
     def may_be_built(self, name: str) -> bool:
-        """Whether a module of this name may come from something else than Python."""
-        return name.startswith("_") or name in self._built or name.endswith(_MADE)
+        """Whether a module of this name may come from something else than Python: it is called like a file of another
+        language, or begins as one is called."""
+        if name.startswith("_") or name in self._built or name.endswith(_MADE):
+            return True
+        return any(len(one) >= _SHORTEST and name.startswith(one) for one in self._built)
 
     def lacks(self, module: str) -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none."""
