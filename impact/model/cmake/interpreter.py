@@ -966,7 +966,7 @@ class Interpreter:
             return ""
         alike = [other for other in self.scope if abs(other.count("_") + 1 - len(words)) == 1]
         alike = [other for other in alike if _is_longer(other.split("_"), words) or _is_longer(words, other.split("_"))]
-        return alike[0] if len(alike) == 1 else ""
+        return str(alike[0]) if len(alike) == 1 else ""
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""
