@@ -457,7 +457,7 @@ class Elsewhere:
         words: set[str] = set()
         paths: set[str] = set()
         refused: dict[str, bool] = {}
-        for suite, libraries in reversed(suites.items()):
+        for suite, libraries in reversed(list(suites.items())):
             for header in (header for facts in libraries.values() for header in facts.headers):
                 if header.sha not in refused:
                     text = texts.get(header.sha)

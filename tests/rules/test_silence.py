@@ -107,6 +107,17 @@ SILENT = {
         | {"msg/Pull.msg": "geometry_msgs/Point at\n"},
         ("CMakeLists.txt", "target_link_libraries(drive ${typesupport})", ""),
     ),
+    "variables of a package that is looked for under several names": Silent(
+        "misspelt-cmake-variable",
+        ("jazzy",),
+        ament(
+            "set(VERSION_MAJOR 1)\nfind_package(QT NAMES Qt6 Qt5 REQUIRED COMPONENTS Core)\n"
+            "add_library(sled sled.cpp)\ntarget_link_libraries(sled Qt${QT_VERSION_MAJOR}::Core)",
+            "qtbase5-dev",
+            sled_cpp="int pull() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "find_package(QT NAMES Qt6 Qt5 REQUIRED COMPONENTS Core)\n", ""),
+    ),
     "headers of what the build downloads": Silent(
         "removed-header",
         ("humble",),

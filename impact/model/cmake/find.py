@@ -96,6 +96,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
                 conditions=merge(conditions, component.conditions),
             )
             run.extend(component, component.at)
+    if sought:
+        run.renamed.add(str(name))
     for one in split_words(sought) or ([name] if name != "catkin" else []):
         if is_unknown(one):
             continue

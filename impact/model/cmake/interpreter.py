@@ -156,6 +156,7 @@ class Interpreter:
         self.catkin_package: At | None = None
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
+        self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
         self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
         self.asked: dict[str, None] = {}
         self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
@@ -959,7 +960,7 @@ class Interpreter:
         words = name.split("_")
         if self.command not in _NEEDS_VALUES or len(name) < 8 or len(words) < 2 or name in self.maybe_set:
             return ""
-        if any(name.lower().startswith(found.name.lower()) for found in self.found):
+        if any(name.lower().startswith(one.lower()) for one in (*self.renamed, *(found.name for found in self.found))):
             return ""
         # A package sets variables that begin as it is called (`find_package(Qt${VERSION})`).
         if any(re.match(r"(?!find_package\()|find_package\(\$", reason) for _, reason in self.unresolved):

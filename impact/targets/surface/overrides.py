@@ -128,12 +128,12 @@ class Override:
         if not self.result or offer is None or not any("result" in told.aspects for told in event.told):
             return False
         version = offer.line.versions[event.place - 1 if earlier else event.place]
-        then = {one.type for one in self._virtual(offered.package, offered.name, version)}
-        if len(then) != 1 or not _agree(self.result, *then, ()):
+        before = sorted({one.type for one in self._virtual(offered.package, offered.name, version)})
+        if len(before) != 1 or not _agree(self.result, before[0], ()):
             return False
         scope = offered.name.rpartition("::")[0]
         return all(
-            not _agree(self.result, one, ()) and self._differ(*then, one, scope, offered.package) for one in now
+            not _agree(self.result, one, ()) and self._differ(before[0], one, scope, offered.package) for one in now
         )
 
     def _differ(self, one: str, other: str, scope: str, package: str) -> bool:
