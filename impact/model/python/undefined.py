@@ -82,12 +82,18 @@ class _Modules:
         inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
         return named.union(name for name in self._others if name not in inside and name not in self._by_name)
 
+    @cached_property
+    def _sources(self) -> set[str]:
+        """What files with an ending, which modules may be made of, are called."""
+        names = (posixpath.basename(path) for path in self._paths if not path.endswith(".py"))
+        return {name.partition(".")[0] for name in names if "." in name}
+
     def may_be_built(self, name: str) -> bool:
         """Whether a module of this name may come from something else than Python: it is called like a file of another
         language, or begins as one is called."""
         if name.startswith("_") or name in self._built or name.endswith(_MADE):
             return True
-        return any(len(one) >= _SHORTEST and name.startswith(one) for one in self._built)
+        return any(len(one) >= _SHORTEST and name.startswith(one) for one in self._sources)
 
     def lacks(self, module: str) -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none."""

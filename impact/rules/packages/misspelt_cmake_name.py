@@ -68,9 +68,9 @@ def misspelt_cmake_name(view: TargetView, package: Package):
 
 def _may_install_any(view: TargetView, name: str) -> bool:
     """Whether a released package is built by plain CMake, which gives configurations any name (protobuf_comm installs
-    `ProtobufComm`), and is not known to install one of its own name."""
-    outside = name not in view.workspace.packages
-    return outside and view.target.build_type(name) == "cmake" and not view.providers.cmake(name)
+    `ProtobufComm`), or by what is not known, and is not known to install one of its own name."""
+    outside = name not in view.workspace.packages and view.target.version(name) is not None
+    return outside and view.target.build_type(name) in ("cmake", "") and not view.providers.cmake(name)
 
 
 def _named(view: TargetView, package: Package):
