@@ -2,8 +2,8 @@
 
 What it does
     Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
-    later version of the package declares, and the target's does not; those of packages that the target does not have
-    and package.xml does not declare; misspelt ones, and those that a package of the workspace does not declare.
+    later version of the package declares and the target's does not; names from packages that the target does not have
+    and package.xml does not declare; misspelt names; and names that a package of the workspace does not declare.
 
 Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
@@ -20,8 +20,8 @@ Use instead
     plugin: "nav2_behaviors::Spin"              # Jazzy and later
 
 Not reported
-    What the workspace itself provides; names that no package is called after and that no version is known to have;
-    files in folders that are called after another distro.
+    What the workspace itself provides; names without the name of a package that no version is known to declare;
+    files in folders named after another distro.
 """
 
 import difflib
@@ -48,7 +48,7 @@ from .diagnosis import (
     texts={
         **availability_texts(),
         "package": GONE_PACKAGE,
-        "own": Text("`{subject}` is not declared by {upstream}", help="[[{upstream} has `{alike}`]]"),
+        "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
 def removed_plugin(view: TargetView):
@@ -105,7 +105,7 @@ def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str
 
 
 def _head(name: str) -> str:
-    """The package that a plugin is called after."""
+    """The package in the name of a plugin."""
     return re.split(r"/|::", name)[0]
 
 

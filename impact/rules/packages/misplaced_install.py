@@ -1,4 +1,4 @@
-"""misplaced-install: an install rule puts headers, modules, components or scripts where nobody can use them.
+"""misplaced-install: an install rule puts headers, modules, components or scripts where they cannot be used.
 
 What it does
     Reports a folder `include` that is installed into another one of that name, headers that are installed under
@@ -53,7 +53,7 @@ from .install_rules import is_installed, list_installing
         ),
         "python": Text(
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
-            "take the folder from the Python that CMake finds, or use ament_python_install_package()",
+            "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
     },
 )
@@ -168,7 +168,7 @@ def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic
 
 
 def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnostic]:
-    """Folders of the prefix that are those of one version of Python, which the target does not have."""
+    """Install folders of a Python version that the target does not have."""
     own = f"{view.target.python_major}.{view.target.python}"
     for install in installs:
         found = re.search(r"(?:^|/)python([23]\.\d+)/(?:site|dist)-packages", install.destination)
