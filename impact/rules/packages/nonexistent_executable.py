@@ -52,10 +52,10 @@ def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagn
         if use.role == "test" or reference.kind != "executable" or "$" in reference.name or not reference.name:
             continue
         if owner is not None:
-            yield from _judge(view, package, use, owner)
+            yield from _check_program(view, package, use, owner)
 
 
-def _judge(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
+def _check_program(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
     name = use.reference.name
     programs = list_programs(owner)
     if programs is None:

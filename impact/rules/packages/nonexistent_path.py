@@ -66,7 +66,7 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
     yield from _list_opened(view, package)
     seen: set[str] = set()
     for use in _list_paths(package):
-        kind, subject = _judge(view, package, use)
+        kind, subject = _find_fault(view, package, use)
         if not kind or not view.active(use.conditions):
             continue
         certain = view.certain(use.conditions)
@@ -122,7 +122,7 @@ def _runs_file(target: BuildTarget, path: str) -> bool:
 _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 
 
-def _judge(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
+def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
     """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
     path = posixpath.normpath(use.path)
     if _HOME.match(path):

@@ -36,7 +36,7 @@ from ..rule import Diagnostic, Text, rule
 _PATTERN = re.compile(r"[*?\[]")
 
 
-class _Named(NamedTuple):
+class _ListedPath(NamedTuple):
     """What a setup file names, and its path below the package. kind: of the text that reports it."""
 
     name: str
@@ -67,7 +67,7 @@ def nonexistent_setup_path(view: TargetView, package: Package):
         folder = posixpath.dirname(file)
         if folder != package.path:
             continue
-        for named in _list_named(setup):
+        for named in _list_paths(setup):
             place = posixpath.normpath(posixpath.join(folder, named.path))
             inside = posixpath.relpath(place, folder or ".")
             if inside.startswith("..") or view.workspace.is_unread(place):
@@ -80,16 +80,16 @@ def nonexistent_setup_path(view: TargetView, package: Package):
                 yield Diagnostic(At(file, named.line), named.name, package.name, {}, kind)
 
 
-def _list_named(setup: SetupFile) -> Iterator[_Named]:
+def _list_paths(setup: SetupFile) -> Iterator[_ListedPath]:
     seen = set()
     for _, path, line in setup.data_files:
         if path and path not in seen and not _PATTERN.search(path) and not path.startswith("/"):
             seen.add(path)
-            yield _Named(path, path, line, "file")
+            yield _ListedPath(path, path, line, "file")
     for path in setup.scripts:
         if not _PATTERN.search(path) and not path.startswith("/"):
-            yield _Named(path, path, 1, "file")
+            yield _ListedPath(path, path, 1, "file")
     for name in setup.packages:
         _, package = setup.places_of("", name)
         if name != "*":
-            yield _Named(name, posixpath.dirname(package), 1, "package")
+            yield _ListedPath(name, posixpath.dirname(package), 1, "package")

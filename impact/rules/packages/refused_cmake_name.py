@@ -52,7 +52,7 @@ def refused_cmake_name(view: TargetView, package: Package):
             seen.add(name)
             doubts = doubts_of_place(view, "build", conditions)
             yield Diagnostic(at, name, package.name, kind="twice", doubts=doubts)
-    refused = ("custom", "executable", "library") if _minimum(package) >= (3,) else ("custom",)
+    refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
     if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
         slashed += [(i.destination, i.at, i.conditions) for i in build.installs if i.kind == "python"]
@@ -61,7 +61,7 @@ def refused_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
 
 
-def _minimum(package: Package) -> tuple[int, ...]:
+def _find_policy_version(package: Package) -> tuple[int, ...]:
     """The version whose policies CMake follows; from 3.0 on it refuses a slash in any name (CMP0037)."""
     lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
     return version_key(upper or lower)

@@ -77,7 +77,7 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-        elif relative := _relative_of(view, name):
+        elif relative := _find_namesake(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
@@ -89,7 +89,7 @@ def unresolvable_key(view: TargetView, package: Package):
 _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip")
 
 
-def _relative_of(view: TargetView, name: str) -> str:
+def _find_namesake(view: TargetView, name: str) -> str:
     """The one package or key that a library's bare name may stand for, by what those of ROS and Debian are called;
     empty where there is none, or several."""
     found = [f"{name}_vendor", f"ros_{name}", f"lib{name}-dev", f"python3-{name}"] if len(name) > 3 else []

@@ -54,7 +54,7 @@ def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
             own = _find_distro(part)
             for use in part.uses:
                 if use.distro in names and use.text not in reported:
-                    for diagnostic in _judge(path, use, own):
+                    for diagnostic in _check_use(path, use, own):
                         reported.add(use.text)
                         yield diagnostic
 
@@ -71,7 +71,7 @@ def _find_distro(part: ContainerPart) -> str:
     return next(iter(both)) if len(both) == 1 and (found or not part.images) else ""
 
 
-def _judge(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
+def _check_use(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
     at = At(path, use.line, use.column)
     if own and use.distro != own and _target(use.distro).platform != _target(own).platform:
         data = {"distro": own, "instead": use.text.replace(use.distro, own, 1)}
