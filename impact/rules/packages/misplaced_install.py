@@ -1,13 +1,13 @@
 """misplaced-install: an install rule puts headers, modules, components or scripts where they cannot be used.
 
 What it does
-    Reports a folder `include` that is installed into another one of that name, headers that are installed under
-    another folder's name than they are included by, scripts that install(FILES) copies without the permission to be
-    executed, registered components outside of `lib`, and folders of another Python than the target's.
+    Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
+    name than code includes them by, scripts that install(FILES) copies without execute permission, registered
+    components outside of `lib`, and install folders of a Python version other than the target's.
 
 Why it breaks
-    The package builds from its own tree; dependants do not find its headers, rosrun or ros2 run not its scripts, Python
-    not its modules, and component containers not its library, which they take from `lib`.
+    The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
+    modules, or component containers its library, which they load from `lib`.
 
 Severity
     error where another package of the workspace compiles such a header, and for scripts that are installed among

@@ -1,4 +1,4 @@
-"""misspelt-cmake-name: the name of a package that is given to CMake is a slip away from the one that was meant.
+"""misspelt-cmake-name: the name of a package is misspelt in CMakeLists.txt.
 
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and

@@ -1,10 +1,10 @@
 """unexported-include-directory: dependants do not get the folder of installed headers, or of what these include.
 
 What it does
-    Reports packages of ament that install headers and a library and export neither include directories nor a target,
-    where another package of the workspace includes them, or only the include directories of a library that nothing in
-    the package links or loads, and packages of headers alone whose installed headers include a system library off the
-    compiler's path that they do not export.
+    Reports ament packages that install headers and a library but export neither include directories nor a target, where
+    another package of the workspace includes the headers; that export only the include directories of a library which
+    nothing in the package links or loads; and header-only packages whose installed headers include a system library
+    outside the compiler's default path that they do not export.
 
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".

@@ -9,9 +9,9 @@ Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
 
 Severity
-    error, since `rosdep install` stops; note for names never seen in public, which may belong to a private repository;
-    warning for those of them that have the form of a key (`python3-x`, `libx-dev`, `x-pip`), or that one released
-    package is called after (`x_vendor`).
+    error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
+    repository; warning for unknown names in the form of a key (`python3-x`, `libx-dev`, `x-pip`), and for a name `x` if
+    exactly one package or key such as `x_vendor` or `libx-dev` exists.
 
 Example
     <depend>Eigen3</depend>
@@ -20,8 +20,8 @@ Use instead
     <depend>eigen</depend>
 
 Not reported
-    Packages that some distro has released (unreleased-package says it), dependencies under a condition that does not
-    hold on the target, and names listed in `[workspace] private`.
+    Packages that some distro has released (unreleased-package reports them), dependencies under a condition that does
+    not hold on the target, and names listed in `[workspace] private` or `installed`.
 """
 
 import re
