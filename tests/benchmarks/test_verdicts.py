@@ -1,4 +1,4 @@
-"""BatchPrecision findings: drawn from heads, asked again, counted by rule for `rosimpact explain`."""
+"""Judged findings: drawn from heads, asked again, counted by rule for `rosimpact explain`."""
 
 import json
 import subprocess
