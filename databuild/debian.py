@@ -398,8 +398,6 @@ def packaged(library: Library, suites: Suites, texts: Texts) -> list[Version]:
     return sorted(found, key=lambda version: (parts(version.number), _ORDER.get(version.release, len(_ORDER))))
 
 
-# -- libraries of which nothing is told by hand ------------------------------------------------------------------------
-
 _OWN = 0.95
 _FEWEST = 8
 _KEPT = 0.6
@@ -473,7 +471,7 @@ class Elsewhere:
         return name.rpartition("::")[2] in self._words.get(release, ())
 
 
-def _shrunk(versions: Sequence[Version]) -> bool:
+def _has_shrunk(versions: Sequence[Version]) -> bool:
     """Whether some version has far fewer headers than the one before: they may be in a package that was not read."""
     return any(
         sum(path in now.headers for path in before.headers) < _KEPT * len(before.headers)
@@ -507,7 +505,7 @@ def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> N
         if sum(count for name, count in uses_of.items() if library.packages.match(name)) < _USED:
             continue
         versions = packaged(library, suites, texts)
-        if not _shrunk(versions):
+        if not _has_shrunk(versions):
             told = groups(library, versions, reviewed, elsewhere=everywhere.has)
             changes += [group for key, group in told if key == "changes"]
     write(output / "changes_debian.json", "changes", changes)

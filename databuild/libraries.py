@@ -120,9 +120,6 @@ def upstream(version: str) -> str:
     return found.group() if found else version
 
 
-# -- which packages ----------------------------------------------------------------------------------------------------
-
-
 def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Pattern[str]] = ()) -> list[Packaged]:
     """The development packages of a suite that these names bring: those among them, and what they depend on of the same
     source. lists: the folder of apt's lists. besides: patterns of further names."""
@@ -177,9 +174,6 @@ def count_uses() -> Counter[str]:
     for key, count in keys.uses.items():
         found.update(dict.fromkeys(keys.debian.get(key, ()), count))
     return found
-
-
-# -- reading -----------------------------------------------------------------------------------------------------------
 
 
 class Texts:
@@ -355,9 +349,6 @@ def read_cmake(
                 variables.add(name)
     ordered = tuple(targets[name] for name in sorted(targets))
     return tuple(sorted(names)), ordered, is_open, tuple(sorted(variables))
-
-
-# -- a run -------------------------------------------------------------------------------------------------------------
 
 
 class Run:

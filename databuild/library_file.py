@@ -43,7 +43,7 @@ export them in some version, where that is one. header: headers
 whose library the table of providers does not lead to."""
 
 
-class Counts(NamedTuple):
+class WrittenCounts(NamedTuple):
     """What was written."""
 
     libraries: int
@@ -52,7 +52,7 @@ class Counts(NamedTuple):
     bytes: int
 
 
-def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: Texts) -> Counts:
+def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: Texts) -> WrittenCounts:
     """Writes the file. suites: by name, oldest first, each with its libraries."""
     by_library: dict[str, list[tuple[str, LibraryFacts]]] = defaultdict(list)
     debian: dict[str, str] = {}
@@ -79,7 +79,7 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
         with writing(file) as output:
             for piece in read_chunks(fresh):
                 output.write(piece)
-    return Counts(len(by_library), versions, headers, file.stat().st_size)
+    return WrittenCounts(len(by_library), versions, headers, file.stat().st_size)
 
 
 def _targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> dict[str, str]:

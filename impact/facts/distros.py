@@ -101,7 +101,7 @@ def extract(data: bytes, kind: str) -> ContainerFile:
         (number, "" if line.lstrip().startswith("#") else line[:_LONG_LINE])
         for number, line in enumerate(decode(data).split("\n"), 1)
     ]
-    return ContainerFile(tuple(_stages(lines) if kind == "dockerfile" else _jobs(lines)))
+    return ContainerFile(tuple(_list_stages(lines) if kind == "dockerfile" else _list_jobs(lines)))
 
 
 _FROM = re.compile(r"\s*FROM\s+(?:--\S+\s+)*(\S+)(?:\s+AS\s+(\S+))?", re.IGNORECASE)
@@ -112,7 +112,7 @@ _SET = re.compile(
 _DECIDES = re.compile(r"\bif\s+(?:\[|test\b|!)|\bcase\s|\bmatrix\b|\bparallel\s*:|\bfor\s+\w+\s+in\b")
 
 
-def _stages(lines: Iterable[tuple[int, str]]) -> Iterator[ContainerPart]:
+def _list_stages(lines: Iterable[tuple[int, str]]) -> Iterator[ContainerPart]:
     """A part for each FROM; one that builds on another stage has its image."""
     parts: list[list[tuple[int, str]]] = []
     for number, line in lines:
@@ -127,10 +127,10 @@ def _stages(lines: Iterable[tuple[int, str]]) -> Iterator[ContainerPart]:
             image = named.get(start[1].lower(), start[1])
             if start[2]:
                 named[start[2].lower()] = image
-            yield _part(part[1:], [image])
+            yield _read_part(part[1:], [image])
 
 
-def _jobs(lines: list[tuple[int, str]]) -> Iterator[ContainerPart]:
+def _list_jobs(lines: list[tuple[int, str]]) -> Iterator[ContainerPart]:
     """A part for each job of GitHub's workflows, else for each key of the file."""
     jobs = next((at for at, (_, line) in enumerate(lines) if re.match(r"jobs\s*:", line)), -1)
     lines = lines[jobs + 1 :]
@@ -142,10 +142,10 @@ def _jobs(lines: list[tuple[int, str]]) -> Iterator[ContainerPart]:
             parts.append([])
         parts[-1].append(row)
     for part in parts:
-        yield _part(part, [m[1] for _, line in part if (m := _IMAGE.match(line))])
+        yield _read_part(part, [m[1] for _, line in part if (m := _IMAGE.match(line))])
 
 
-def _part(lines: list[tuple[int, str]], images: list[str]) -> ContainerPart:
+def _read_part(lines: list[tuple[int, str]], images: list[str]) -> ContainerPart:
     distros = [m[1].strip("\"',]") for _, line in lines for m in _SET.finditer(line)]
     uses = tuple(
         DistroUse(m[1], m[0], number, m.start() + 1)

@@ -465,7 +465,7 @@ class _Join:
             elif isinstance(facts, SetupFile):
                 setup.append((path, facts))
             elif isinstance(facts, CMakeFile):
-                interpreted.update(_scripts_run(facts))
+                interpreted.update(_list_interpreted(facts))
             else:
                 data_words.append(getattr(facts, "words", ""))
                 if kind in ("params", "launch_yaml"):
@@ -1149,7 +1149,7 @@ class _Join:
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
-def _scripts_run(facts: CMakeFile) -> Iterator[str]:
+def _list_interpreted(facts: CMakeFile) -> Iterator[str]:
     """Names of the Python files that CMake code mentions, where it starts a Python interpreter."""
     texts = [[argument.text for argument in c.arguments] for c in facts.commands if "install" not in c.name]
     if any(one == "COMMAND" and "python" in other.lower() for text in texts for one, other in itertools.pairwise(text)):

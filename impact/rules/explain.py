@@ -12,10 +12,10 @@ from .rule import Rule, groups
 PRECISION = Path(__file__).with_name("precision.json")
 
 
-class Judged(msgspec.Struct, frozen=True):
-    """The findings of a rule in one batch that readers judged by the sources, before the rule was changed because of
-    them. repositories: how many they are in. right: those that were right, also ones of targets or builds that hardly
-    anybody has. badly_said: there is a fault, but the text misleads."""
+class BatchPrecision(msgspec.Struct, frozen=True):
+    """How many findings of a rule were right in one batch. Readers judged them by the sources, before they changed the
+    rule. repositories: how many the findings are in. right: includes those on targets or builds that are hardly used.
+    badly_said: there is a fault, but the text misleads."""
 
     batch: str
     repositories: int
@@ -24,12 +24,12 @@ class Judged(msgspec.Struct, frozen=True):
     badly_said: int
 
 
-def read_precision() -> dict[str, list[Judged]]:
+def read_precision() -> dict[str, list[BatchPrecision]]:
     """How the findings of each rule were judged, batch by batch, from what `benchmarks/verdicts.py precision` wrote."""
-    return msgspec.json.decode(PRECISION.read_bytes(), type=dict[str, list[Judged]])
+    return msgspec.json.decode(PRECISION.read_bytes(), type=dict[str, list[BatchPrecision]])
 
 
-def describe_precision(judged: list[Judged]) -> str:
+def describe_precision(judged: list[BatchPrecision]) -> str:
     """The paragraph on how many findings of a rule were right."""
     if not judged:
         return "Precision at first sight\n    No finding of this rule was judged yet."

@@ -128,7 +128,7 @@ def test_precision_is_counted_by_rule_and_batch():
 def test_explain_tells_the_precision_that_the_verdicts_give():
     counted = verdicts.count_precision(verdicts.judged(first_sight.BATCHES))
     assert json.loads(explain.PRECISION.read_text()) == counted, "run `benchmarks/verdicts.py precision`"
-    assert explain.describe_precision([explain.Judged("x", 2, 9, 7, 1)]).splitlines() == [
+    assert explain.describe_precision([explain.BatchPrecision("x", 2, 9, 7, 1)]).splitlines() == [
         "Precision at first sight",
         "    x: 7 of 9 findings right, 1 badly said (repositories: 2)",
     ]

@@ -44,9 +44,9 @@ def list_undefined_functions(
 ) -> Iterator[tuple[str, Import]]:
     """Functions of entry points that their modules lack, as imports of them that stand in the setup file. files: as
     above. setup: the setup files of a package by their paths."""
-    for path, told in setup:
-        for _, module, line, function in told.entry_points:
-            place = next((one for one in told.places_of(posixpath.dirname(path), module) if one in files), None)
+    for path, file in setup:
+        for _, module, line, function in file.entry_points:
+            place = next((one for one in file.places_of(posixpath.dirname(path), module) if one in files), None)
             name = function.partition(".")[0]
             if place is not None and name and files[place].bound and f" {name} " not in files[place].bound:
                 yield path, Import(module, (name,), 0, line, 0)

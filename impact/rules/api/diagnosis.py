@@ -14,7 +14,7 @@ UPSTREAM = "{upstream}[[ {version}]]"
 
 
 GONE_PACKAGE = Text(
-    "`{subject}` belongs to {upstream}, which {distro} does not have[[ (last in {last})]]", "[[{replacement}]]"
+    "`{subject}` belongs to {upstream}, which is not available in {distro}[[ (last in {last})]]", "[[{replacement}]]"
 )
 """For what find_gone_package() yields."""
 
@@ -88,9 +88,9 @@ def diagnose(
 def find_gone_package(
     view: TargetView, package: Package, use: ReferenceUse, upstream: str, subject: str
 ) -> Iterator[Diagnostic]:
-    """Says that a launch file or parameter file names something of a package that the target does not have, where
-    no other rule does: package.xml does not declare it. Not of tests, and not in ROS 1, where releases carry many a
-    launch file that nobody starts any more."""
+    """Reports that a launch file or parameter file names something of a package that the target does not have, where
+    no other rule does: package.xml does not declare it. Not in tests, and not in ROS 1, whose releases contain many
+    launch files that are no longer used."""
     if view.target.ros == 1 or use.role == "test":
         return
     if not view.is_package(upstream) or upstream in view.workspace.packages or upstream in package.declared:

@@ -2,16 +2,16 @@
 
 What it does
     Reports calls of macros and functions, and uses of imported targets and variables, that the target's version of the
-    providing package does not define: by the known-changes table no longer, and by what its sources and those of other
-    versions export no longer or not yet.
+    providing package does not define: names that the known-changes table lists as removed, and names that other
+    versions of the package export and this one does not.
 
 Why it breaks
     CMake stops at an unknown command or target; an unknown variable is empty and the build fails later.
 
 Severity
-    error for commands and targets that are surely reached; warning for variables, which only the table tells of, under
-    conditions that are not known, and where the exports of the target's version cannot be told whole; one warning for
-    what is deprecated on the target and removed on the newest distro.
+    error for commands and targets that CMake always reaches; warning for variables, under conditions that cannot be
+    decided, where the exports of the target's version are not completely known, and, once, for a name that is
+    deprecated on the target and removed on the newest distro.
 
 Example
     ament_target_dependencies(node rclcpp)      # removed in ament_cmake 2.8.5

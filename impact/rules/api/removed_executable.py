@@ -2,17 +2,17 @@
 
 What it does
     Reports nodes that launch files and scripts start, launch files that they include, and arguments that they give to
-    those, which the target's version of the package does not install or declare, and an earlier or later version does;
-    misspelt ones, and nodes of packages that the target does not have and package.xml does not declare.
+    those, which the target's version of the package does not install or declare, but an earlier or later version does;
+    misspelt names; and nodes of packages that the target does not have and package.xml does not declare.
 
 Why it breaks
     `ros2 launch` stops with "executable not found" or "file not found" when the file is started; an argument that is
     not declared has no effect in ROS 2, and stops roslaunch.
 
 Severity
-    error for what is started or included in every run of ROS 2; warning for what stands under a condition, for
-    arguments, for tests, where something about the target's version is guessed, and in ROS 1, where releases carry many
-    a launch file that nobody starts any more; note in examples, and for launch files of ROS 1 in a package of ROS 2.
+    error for what is always started or included in ROS 2; warning under a condition, for arguments, for tests, where
+    something about the target's version is guessed, and in ROS 1, whose releases contain many launch files that are no
+    longer used; note in examples, and for launch files of ROS 1 in a package of ROS 2.
 
 Example
     Node(package='controller_manager', executable='spawner.py')     # gone in controller_manager 2.0
@@ -21,8 +21,8 @@ Use instead
     Node(package='controller_manager', executable='spawner')
 
 Not reported
-    What the workspace itself provides; arguments that any launch file of
-    the target's version declares, since they are handed on; files in folders that are called after another distro.
+    What the workspace itself provides; arguments that any launch file of the target's version declares, since they are
+    passed on; files in folders named after another distro.
 """
 
 import posixpath

@@ -2,8 +2,8 @@
 
 What it does
     Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
-    later version of the package declares, and the target's does not; those of packages that the target does not have
-    and package.xml does not declare; misspelt ones, and those that a package of the workspace does not declare.
+    later version of the package declares and the target's does not; names from packages that the target does not have
+    and package.xml does not declare; misspelt names; and names that a package of the workspace does not declare.
 
 Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
@@ -20,8 +20,8 @@ Use instead
     plugin: "nav2_behaviors::Spin"              # Jazzy and later
 
 Not reported
-    What the workspace itself provides; names that no package is called after and that no version is known to have;
-    files in folders that are called after another distro.
+    What the workspace itself provides; names without the name of a package that no version is known to declare;
+    files in folders named after another distro.
 """
 
 import difflib
@@ -48,17 +48,17 @@ from .diagnosis import (
     texts={
         **availability_texts(),
         "package": GONE_PACKAGE,
-        "own": Text("`{subject}` is not declared by {upstream}", help="[[{upstream} has `{alike}`]]"),
+        "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
 def removed_plugin(view: TargetView):
-    declared = {package.name: _declared(package) for package in view.workspace}
+    declared = {package.name: _list_declared(package) for package in view.workspace}
     own = {name for names in declared.values() for name in names}
     for package in view:
         yield from rate_upcoming(_of_package(view, package, own, declared))
 
 
-def _declared(package: Package) -> set[str]:
+def _list_declared(package: Package) -> set[str]:
     """Names of the plugins and components of a package of the workspace."""
     names = {name for _, plugin in package.digest.plugins for name in (plugin.name, plugin.type) if name}
     components = (export.item for export in package.build.exports if export.how == "component")
@@ -77,7 +77,7 @@ def _of_package(
         if is_of_another_distro(view, use.at.path, files):
             continue
         loaded = bool(use.reference.package) and not use.reference.conditional
-        head = use.reference.package or _head(name)
+        head = use.reference.package or _find_package_part(name)
         known = declared.get(head, set())
         if known:
             owner = view.workspace.packages[head]
@@ -99,13 +99,13 @@ def _of_package(
 
 def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
-    heads = (use.reference.package, _head(use.reference.name))
+    heads = (use.reference.package, _find_package_part(use.reference.name))
     named = [name for name in heads if name and view.is_package(name) and view.available(name)]
     return named or sorted(name for name in view.closure(package) if name not in view.workspace.packages)
 
 
-def _head(name: str) -> str:
-    """The package that a plugin is called after."""
+def _find_package_part(name: str) -> str:
+    """The package in the name of a plugin."""
     return re.split(r"/|::", name)[0]
 
 

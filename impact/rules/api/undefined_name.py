@@ -1,18 +1,18 @@
 """undefined-name: a Python file uses a name that nothing defines.
 
 What it does
-    Reports names that a Python file neither binds nor imports and that are no builtins, such as a class whose import
-    was forgotten; names that are imported from a module of the same package which lacks them, or is not there; and
-    builtins of Python 2 alone (`raw_input`, `unicode`), or methods of its dictionaries (`iteritems`), where the target
-    has Python 3.
+    Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
+    imports from a module of the same package that does not exist or does not define the name; functions of entry
+    points that their module does not define; and builtins (`raw_input`, `unicode`) and dictionary methods
+    (`iteritems`) that only Python 2 has, where the target has Python 3.
 
 Why it breaks
-    Python raises a NameError or ImportError when the line is reached.
+    Python raises a NameError, ImportError or AttributeError when it reaches the line.
 
 Severity
-    error for what surely runs when a program, launch file or module of the package is started or imported; warning for
-    what is only used in a function that may not run, for methods, and for tests; note in examples, and for what only
-    the newest distro does not accept, besides the first place of a package.
+    error for code that always runs when a program, launch file or module of the package is started or imported; warning
+    inside functions, which may not be called, for methods, and in tests; note in examples. What only the newest distro
+    does not accept is a warning at the first place of a package, and a note at the others.
 
 Example
     name = raw_input("name? ")
@@ -21,8 +21,8 @@ Use instead
     name = input("name? ")
 
 Not reported
-    What stands under a `try` that expects it or a test of the Python version; files with a star import, or that define
-    names by `exec`, `globals()` and the like; imports from modules that do so; methods that the file itself defines.
+    Code inside a `try` that catches the error, or under a test of the Python version; files with a star import, or that
+    define names with `exec`, `globals()` and the like; imports from such modules; methods that the file itself defines.
 """
 
 from collections.abc import Iterator
@@ -39,13 +39,11 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 @rule(
     scope="target",
     texts={
-        "undefined": Text("nothing in the file defines or imports `{subject}`", "define or import `{subject}`"),
+        "undefined": Text("`{subject}` is neither defined nor imported in this file", "define or import `{subject}`"),
         "python 2": Text(
-            "`{subject}` is not defined in Python {version}[[ ({horizon})]]", "use its successor in Python 3"
+            "`{subject}` is not defined in Python {version}[[ ({horizon})]]", "use the Python 3 equivalent"
         ),
-        "module": Text(
-            "`{subject}` is no module of the package", "import it by its path below the folder that is installed"
-        ),
+        "module": Text("the package has no module `{subject}`", "correct the module path in the import"),
         "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
     },
 )

@@ -128,9 +128,9 @@ def _list_python(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     if not package.digest.python_api:
         return
     reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
-    told = {change.old for change in view.changes("call-changed")}
+    changed = {change.old for change in view.changes("call-changed")}
     patterns = {
-        (use.at.path, use.at.line) for use in package.digest.uses if use.language == "python" and use.text in told
+        (use.at.path, use.at.line) for use in package.digest.uses if use.language == "python" and use.text in changed
     }
     for one in package.digest.python_api:
         use = one.use

@@ -1,23 +1,23 @@
-"""broken-entry-point: an entry point of setup.py names a module that is not there, or not installed.
+"""broken-entry-point: an entry point of setup.py names a module that does not exist or is not installed.
 
 What it does
-    Looks for the modules of the entry points under console_scripts in packages of Python: whether the tree has them,
-    and whether the packages that setup() lists hold them. That a module lacks the function, undefined-name says.
+    Reports console_scripts entry points of ament_python packages whose module does not exist, or lies in a Python
+    package that setup() does not install. undefined-name reports functions that the module does not define.
 
 Why it breaks
-    The program is installed and stops when it is started: ModuleNotFoundError.
+    The program is installed, but stops with a ModuleNotFoundError when it is started.
 
 Severity
     error.
 
 Example
-    entry_points={'console_scripts': ['drive = sled.driver:main']}      # and the module is sled/drive.py
+    entry_points={'console_scripts': ['drive = sled.driver:main']}      # but the module is sled/drive.py
 
 Use instead
     entry_points={'console_scripts': ['drive = sled.drive:main']}
 
 Not reported
-    Modules of other packages; packages that only running setup.py tells; folders that were not read.
+    Modules of other packages; lists of packages that setup.py computes; folders that were not read.
 """
 
 import posixpath
@@ -31,11 +31,11 @@ from ..rule import Diagnostic, Text, rule
 
 @rule(
     texts={
-        "absent": Text("the program `{program}` starts the module `{subject}`, which does not exist",
-                       "name the module that is there"),
+        "absent": Text("entry point `{program}` names module `{subject}`, which does not exist",
+                       "correct the module path in the entry point"),
         "not installed": Text(
-            "the program `{program}` starts the module `{subject}`, and setup() does not install `{folder}`",
-            "add `{folder}` to `packages`, or use find_packages()",
+            "entry point `{program}` names module `{subject}`, but setup() does not install package `{owner}`",
+            "add `{owner}` to `packages`, or use find_packages()",
         ),
     },
 )  # fmt: skip
@@ -52,12 +52,14 @@ def broken_entry_point(view: TargetView, package: Package):
             if package.files.isdisjoint(places):
                 yield Diagnostic(At(file, line), module, package.name, {"program": program}, "absent")
             elif (missing := _find_uninstalled(setup, module, places[1] in package.files)) is not None:
-                data = {"program": program, "folder": missing}
+                data = {"program": program, "owner": missing}
                 yield Diagnostic(At(file, line), module, package.name, data, "not installed")
 
 
 def _find_uninstalled(setup: SetupFile, module: str, is_package: bool) -> str | None:
     """The Python package that a module lies in, where setup() surely does not install it."""
     name = module if is_package else module.rpartition(".")[0]
-    told = bool(setup.packages) and not any(clause.startswith(("packages", "arguments")) for clause in setup.unresolved)
-    return name if name and told and "*" not in setup.packages and name not in setup.packages else None
+    known = bool(setup.packages) and not any(
+        clause.startswith(("packages", "arguments")) for clause in setup.unresolved
+    )
+    return name if name and known and "*" not in setup.packages and name not in setup.packages else None

@@ -49,8 +49,8 @@ _TAGS = {
             "`<{subject}>{text}</{subject}>` is not a tag of format {format}, so `{text}` is not declared", _HELP
         ),
         "export": Text(
-            "`<{tag}>{subject}</{tag}>` stands inside of `<export>`, so `{subject}` is not declared",
-            "move it out of `<export>`",
+            "`<{tag}>{subject}</{tag}>` is inside `<export>`, so `{subject}` is not a dependency",
+            "move the tag out of `<export>`",
         ),
         "problem": Text("{problem}", "correct the manifest"),
         "condition": Text(

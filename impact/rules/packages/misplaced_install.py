@@ -1,13 +1,13 @@
-"""misplaced-install: an install rule puts headers, modules, components or scripts where nobody can use them.
+"""misplaced-install: an install rule puts headers, modules, components or scripts where they cannot be used.
 
 What it does
-    Reports a folder `include` that is installed into another one of that name, headers that are installed under
-    another folder's name than they are included by, scripts that install(FILES) copies without the permission to be
-    executed, registered components outside of `lib`, and folders of another Python than the target's.
+    Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
+    name than code includes them by, scripts that install(FILES) copies without execute permission, registered
+    components outside of `lib`, and install folders of a Python version other than the target's.
 
 Why it breaks
-    The package builds from its own tree; dependants do not find its headers, rosrun or ros2 run not its scripts, Python
-    not its modules, and component containers not its library, which they take from `lib`.
+    The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
+    modules, or component containers its library, which they load from `lib`.
 
 Severity
     error where another package of the workspace compiles such a header, and for scripts that are installed among
@@ -53,7 +53,7 @@ from .install_rules import is_installed, list_installing
         ),
         "python": Text(
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
-            "take the folder from the Python that CMake finds, or use ament_python_install_package()",
+            "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
     },
 )
@@ -168,7 +168,7 @@ def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic
 
 
 def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnostic]:
-    """Folders of the prefix that are those of one version of Python, which the target does not have."""
+    """Install folders of a Python version that the target does not have."""
     own = f"{view.target.python_major}.{view.target.python}"
     for install in installs:
         found = re.search(r"(?:^|/)python([23]\.\d+)/(?:site|dist)-packages", install.destination)

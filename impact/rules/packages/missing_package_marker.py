@@ -1,12 +1,12 @@
-"""missing-package-marker: an ament_python package does not install its marker in the package index.
+"""missing-package-marker: an ament_python package is not registered in the ament index.
 
 What it does
-    Looks in data_files of setup.py for `share/ament_index/resource_index/packages` with a file that is called like the
-    package, where setup.py installs programs or data.
+    Reports packages that install programs or data, but whose data_files do not install a marker file with the name of
+    the package into `share/ament_index/resource_index/packages`.
 
 Why it breaks
-    `ros2 run`, `ros2 launch` and get_package_share_directory() look a package up in the index. colcon puts the marker
-    in for now and says that it will stop doing so; a Debian package of it has none.
+    `ros2 run`, `ros2 launch` and get_package_share_directory() look for the package in this index. colcon still adds a
+    missing marker, with a warning that it will stop doing so; a Debian package of the package has none.
 
 Severity
     warning.
@@ -18,7 +18,7 @@ Use instead
     data_files=[('share/ament_index/resource_index/packages', ['resource/sled']), ('share/sled', ['package.xml'])]
 
 Not reported
-    data_files that only running setup.py tells; packages without setup.py, and without programs and launch files.
+    data_files that setup.py computes; packages without setup.py, or without programs and data files.
 """
 
 import posixpath
@@ -34,8 +34,8 @@ _INDEX = "share/ament_index/resource_index/packages"
 @rule(
     severity="warning",
     texts=Text(
-        "`{package}` does not install its marker in the package index",
-        "add ('{index}', ['resource/{package}']) to data_files, with the empty file resource/{package}",
+        "setup.py does not register `{package}` in the ament index",
+        "add `('{index}', ['resource/{package}'])` to data_files; resource/{package} is an empty file",
     ),
 )
 def missing_package_marker(view: TargetView, package: Package):
@@ -50,7 +50,7 @@ def missing_package_marker(view: TargetView, package: Package):
     if not files and not any(setup.entry_points for _, setup in own):
         return
     markers = [path for destination, path in files if destination == _INDEX]
-    # Of files that do not exist, nonexistent-setup-path tells.
+    # nonexistent-setup-path reports markers that do not exist.
     named = any(posixpath.basename(path) in (package.name, "*") for path in markers)
     if not named and all(posixpath.join(package.path, path) in package.files for path in markers):
         yield Diagnostic(At(code, 1), package.name, package.name, {"index": _INDEX})

@@ -1,4 +1,4 @@
-"""misspelt-cmake-name: the name of a package that is given to CMake is a slip away from the one that was meant.
+"""misspelt-cmake-name: the name of a package is misspelt in CMakeLists.txt.
 
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
@@ -41,7 +41,7 @@ def misspelt_cmake_name(view: TargetView, package: Package):
     found = {f.name for f in package.build.found}
     prefixes = {f.prefix for f in package.build.found if f.prefix}
     near = None
-    for at, name, required, conditions, exported in _named(view, package):
+    for at, name, required, conditions, exported in _list_named(view, package):
         if package.name in view.workspace.find_modules.get(name, ()):
             continue
         if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
@@ -73,7 +73,7 @@ def _may_install_any(view: TargetView, name: str) -> bool:
     return outside and view.target.build_type(name) in ("cmake", "") and not view.providers.cmake(name)
 
 
-def _named(view: TargetView, package: Package):
+def _list_named(view: TargetView, package: Package):
     for f in package.build.found:
         if f.how in ("find_package", "catkin") and f.name != "catkin":
             yield f.at, f.name, f.required or f.how == "catkin", f.conditions, False

@@ -2,8 +2,8 @@
 
 What it does
     Reports variables such as `Eigen3_INCLUDE_DIR` that no find_package sets, one edit or case away from one that a
-    find_package of the same package does set; and others in what is installed, linked or added that nothing sets, where
-    one whose name has a word more or less is set.
+    find_package of the same package does set; and other variables in install, link and target commands that nothing
+    sets, where a variable with one word more or less in its name is set.
 
 Why it breaks
     CMake takes an unknown variable as empty and says nothing: an include folder or a library is missing later on.

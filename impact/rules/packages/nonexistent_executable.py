@@ -1,14 +1,14 @@
-"""nonexistent-executable: a launch file starts a program that its package of the workspace does not have.
+"""nonexistent-executable: a launch file starts a program that a package of the workspace does not install.
 
 What it does
-    Compares the nodes that launch files and scripts start in packages of the workspace with the programs that these
-    install into lib/<package>: entry points, targets, scripts and components.
+    Compares the nodes that launch files and scripts start from packages of the workspace with the programs that these
+    packages install into lib/<package>: entry points, targets, scripts and components.
 
 Why it breaks
     `ros2 launch` and `ros2 run` stop with "executable not found".
 
 Severity
-    error for what is started in every run; warning under a condition; note in examples.
+    error for nodes that are always started; warning under a condition; note in examples.
 
 Example
     Node(package='sled_driver', executable='sled_drvier')
@@ -17,8 +17,8 @@ Use instead
     Node(package='sled_driver', executable='sled_driver')
 
 Not reported
-    Targets without an install rule, which are missing-install; packages whose CMake or setup code cannot be told
-    completely; tests, among which many a file of ROS 1 was left behind; packages of ROS 1.
+    Targets without an install rule (missing-install reports them); packages whose CMake or setup code cannot be read
+    completely; tests, which often contain launch files left over from ROS 1; packages of ROS 1.
 """
 
 import difflib
@@ -38,7 +38,7 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
     texts={
         "": Text("`{upstream}` has no executable `{subject}`", "[[did you mean `{alike}`?]]"),
         "folder": Text(
-            "`{subject}` is installed into `{folder}`, but nodes are looked for in `lib/{upstream}`",
+            "`{subject}` is installed into `{folder}`, but ROS 2 looks for executables in `lib/{upstream}`",
             "install it into lib/{upstream}",
         ),
     },
@@ -52,10 +52,10 @@ def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagn
         if use.role == "test" or reference.kind != "executable" or "$" in reference.name or not reference.name:
             continue
         if owner is not None:
-            yield from _judge(view, package, use, owner)
+            yield from _check_program(view, package, use, owner)
 
 
-def _judge(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
+def _check_program(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
     name = use.reference.name
     programs = list_programs(owner)
     if programs is None:

@@ -46,7 +46,7 @@ from .install_rules import is_installed
             "create it, or drop INCLUDE_DIRS",
         ),
         "no header": Text(
-            "`{directory}` is exported as include directory, but no install rule takes its headers",
+            "`{directory}` is exported as include directory, but its headers are not installed",
             "install(DIRECTORY {directory}/ DESTINATION {place})",
         ),
         "no target": Text(
@@ -99,7 +99,7 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
     libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
     offers = any(e.how == "libraries" and e.item in libraries for e in exports)
     if not offers and package.name not in view.workspace.includers:
-        return  # nobody is there for the headers
+        return  # nobody uses the headers
     if package.build.unresolved or any("$" in item for i in installs for item in i.items):
         return
     for export in exports:

@@ -1,20 +1,21 @@
-"""nonexistent-path: a build or a launch file reads a file that does not exist, or that a release does not hold.
+"""nonexistent-path: a build or a launch file reads a file that does not exist or is not part of a release.
 
 What it does
-    Reports sources of targets, files given to test commands, and what include() and add_subdirectory() read, where
-    neither the tree has the file nor the build makes it, and launch files, parameters and robot descriptions that a
-    launch file opens in the share folder of a package of the workspace. Of paths in CMake that are there, those that
-    lead out of the package's folder (`../common.cmake`), that begin in somebody's home folder, or below
-    `${CMAKE_SOURCE_DIR}` as if the build always began in a folder above the package.
+    Reports files that neither exist nor are made by the build: sources of targets, files given to test commands, files
+    that include() and add_subdirectory() read, and launch files, parameter files and robot descriptions that a launch
+    file opens in the share folder of a package of the workspace. Also reports paths in CMake that exist only in some
+    places: outside the package's folder (`../common.cmake`), in a user's home folder, and below `${CMAKE_SOURCE_DIR}`
+    as if the build always started in a folder above the package.
 
 Why it breaks
-    CMake stops: "Cannot find source file", "could not find requested file". A release holds the package's folder
-    alone, and `${CMAKE_SOURCE_DIR}` is that folder where it is built alone, as by colcon, catkin_make_isolated and the
-    build farm. A launch file stops when it opens the file.
+    CMake stops: "Cannot find source file", "could not find requested file". A release contains only the package's
+    folder, and `${CMAKE_SOURCE_DIR}` is that folder when colcon, catkin_make_isolated or the build farm builds the
+    package. A launch file stops when it opens the file.
 
 Severity
-    error for what a build reads; warning for tests, under a condition, where something is downloaded for the build, for
-    what exists elsewhere, and for what launch files open; note for files outside of a package that was never released.
+    error for files that a build reads; warning for tests, under a condition, where the build downloads something, for
+    paths that exist only in some places, and for files that launch files open; note for files outside of a package that
+    was never released.
 
 Example
     add_executable(sled_node src/sled_nod.cpp)
@@ -23,8 +24,8 @@ Use instead
     add_executable(sled_node src/sled_node.cpp)
 
 Not reported
-    Files that the build makes, and sources in folders that it may make; paths that are not known; folders that were not
-    read, as a submodule is; folders of headers in other packages, which need not exist.
+    Files that the build makes, and sources in folders that it may make; paths that cannot be resolved; folders that
+    were not read, such as submodules; include directories in other packages, which need not exist.
 """
 
 import posixpath
@@ -39,31 +40,33 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
 
-_CORRECT = "correct the path, or drop it"
+_CORRECT = "correct or remove the path"
 
 
 @rule(
     texts={
-        "source": Text("`{by}` is built of `{subject}`, which does not exist", _CORRECT),
-        "test": Text("the test `{subject}` does not exist, so CMake stops", _CORRECT),
+        "source": Text("target `{by}` lists source `{subject}`, which does not exist", _CORRECT),
+        "test": Text("test file `{subject}` does not exist", _CORRECT),
         "read": Text("{by}() reads `{subject}`, which does not exist", _CORRECT),
-        "opened": Text("`{subject}` of `{by}` is opened but does not exist", "correct the path, or create the file"),
+        "opened": Text(
+            "package `{by}` has no file `{subject}`, which is opened here", "correct the path, or create the file"
+        ),
         "above": Text(
-            "`{subject}` is found below `${{CMAKE_SOURCE_DIR}}` only where catkin_make builds the whole workspace",
+            "`{subject}` is below `${{CMAKE_SOURCE_DIR}}` only when catkin_make builds the whole workspace",
             "write `${{PROJECT_SOURCE_DIR}}/{subject}`",
         ),
         "outside": Text(
-            "`{subject}` lies outside of the package, so it is not there where `{package}` is built from its release",
-            "move it into the package, or into one that exports it",
+            "`{subject}` is outside the package, so it is missing when `{package}` is built from its release",
+            "move it into this package, or into a dependency that installs it",
         ),
-        "machine": Text("`{subject}` exists on one machine alone", "look for it with find_package or find_path"),
+        "machine": Text("`{subject}` is a path of one machine", "use find_package() or find_path() instead"),
     },
 )
 def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     yield from _list_opened(view, package)
     seen: set[str] = set()
     for use in _list_paths(package):
-        kind, subject = _judge(view, package, use)
+        kind, subject = _find_fault(view, package, use)
         if not kind or not view.active(use.conditions):
             continue
         certain = view.certain(use.conditions)
@@ -119,7 +122,7 @@ def _runs_file(target: BuildTarget, path: str) -> bool:
 _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 
 
-def _judge(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
+def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
     """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
     path = posixpath.normpath(use.path)
     if _HOME.match(path):

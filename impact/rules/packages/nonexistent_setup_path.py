@@ -1,8 +1,8 @@
 """nonexistent-setup-path: setup.py of an ament_python package names a file or folder that does not exist.
 
 What it does
-    Looks for the files that setup.py, setup.cfg or pyproject.toml gives to data_files and scripts, and for the folders
-    of the packages that it lists by name. Of data_files also folders, which setuptools does not copy.
+    Reports files in data_files and scripts, and packages listed by name, that do not exist, in setup.py, setup.cfg and
+    pyproject.toml. Also reports folders in data_files, since setuptools copies only files.
 
 Why it breaks
     setuptools stops: "can't copy 'resource/sled': doesn't exist or not a regular file", "package directory 'sled' does
@@ -12,14 +12,14 @@ Severity
     error.
 
 Example
-    data_files=[('share/sled/launch', ['launch/sled.launch.py'])]       # and the file is launch/sled_launch.py
+    data_files=[('share/sled/launch', ['launch/sled.launch.py'])]       # but the file is launch/sled_launch.py
 
 Use instead
     data_files=[('share/sled/launch', ['launch/sled_launch.py'])]
 
 Not reported
-    Patterns given to glob(), which may match nothing; paths that are put together of what only running setup.py tells;
-    folders that were not read, as a submodule is; packages that CMake builds, and those of ROS 1.
+    Patterns given to glob(), which may match nothing; paths that setup.py computes; folders that were not read, such as
+    submodules; packages that CMake builds, and packages of ROS 1.
 """
 
 import posixpath
@@ -36,8 +36,8 @@ from ..rule import Diagnostic, Text, rule
 _PATTERN = re.compile(r"[*?\[]")
 
 
-class _Named(NamedTuple):
-    """What a setup file names, and its path below the package. kind: of the text that tells of its absence."""
+class _ListedPath(NamedTuple):
+    """What a setup file names, and its path below the package. kind: of the text that reports it."""
 
     name: str
     path: str
@@ -47,13 +47,16 @@ class _Named(NamedTuple):
 
 @rule(
     texts={
-        "file": Text("`{subject}` is to be installed, but it does not exist", "correct the path, or create the file"),
+        "file": Text(
+            "`{subject}` is listed for installation but does not exist", "correct the path, or create the file"
+        ),
         "folder": Text(
-            "`{subject}` is a folder, and data_files takes files alone", "name its files, as glob('{subject}/*') does"
+            "`{subject}` is a folder, but data_files accepts only files",
+            "list its files, e.g. with `glob('{subject}/*')`",
         ),
         "package": Text(
-            "the Python package `{subject}` is to be installed, but there is no folder of this name",
-            "list the folders that are there, or use find_packages()",
+            "Python package `{subject}` is listed for installation, but its folder does not exist",
+            "list only packages that exist, or use find_packages()",
         ),
     },
 )
@@ -64,29 +67,29 @@ def nonexistent_setup_path(view: TargetView, package: Package):
         folder = posixpath.dirname(file)
         if folder != package.path:
             continue
-        for named in _list_named(setup):
+        for named in _list_paths(setup):
             place = posixpath.normpath(posixpath.join(folder, named.path))
             inside = posixpath.relpath(place, folder or ".")
             if inside.startswith("..") or view.workspace.is_unread(place):
                 continue
             is_folder = package.has_files(inside)
             if named.kind == "package" and (is_folder or f"{place}.py" in package.files):
-                continue  # modules stand among the packages
+                continue  # some list single modules as packages
             if place not in package.files:
                 kind = "folder" if is_folder else named.kind
                 yield Diagnostic(At(file, named.line), named.name, package.name, {}, kind)
 
 
-def _list_named(setup: SetupFile) -> Iterator[_Named]:
+def _list_paths(setup: SetupFile) -> Iterator[_ListedPath]:
     seen = set()
     for _, path, line in setup.data_files:
         if path and path not in seen and not _PATTERN.search(path) and not path.startswith("/"):
             seen.add(path)
-            yield _Named(path, path, line, "file")
+            yield _ListedPath(path, path, line, "file")
     for path in setup.scripts:
         if not _PATTERN.search(path) and not path.startswith("/"):
-            yield _Named(path, path, 1, "file")
+            yield _ListedPath(path, path, 1, "file")
     for name in setup.packages:
         _, package = setup.places_of("", name)
         if name != "*":
-            yield _Named(name, posixpath.dirname(package), 1, "package")
+            yield _ListedPath(name, posixpath.dirname(package), 1, "package")

@@ -1,14 +1,14 @@
 """package-linked-by-name: a target links the bare name of a package that has no library.
 
 What it does
-    Reports names of packages in target_link_libraries() that CMake finds, and that have no compiled library and export
-    no target called so.
+    Reports names of found packages in target_link_libraries() where the package has no compiled library and exports no
+    target of that name.
 
 Why it breaks
-    CMake hands what is no target to the linker, which stops: cannot find -lname.
+    CMake passes a name that is not a target to the linker, which stops: "cannot find -lname".
 
 Severity
-    error; warning in tests of ROS 1 and under a condition that is not known.
+    error; warning in tests of ROS 1 and under a condition that cannot be decided.
 
 Example
     target_link_libraries(arm pluginlib)
@@ -27,7 +27,7 @@ from ..rule import Diagnostic, Text, doubts_of_place, rule
 
 @rule(
     texts=Text(
-        "`{target}` links `{subject}`, but that package has no library",
+        "`{target}` links `{subject}`, but package `{subject}` has no library",
         "[[link `{replacement}`]]",
     ),
 )

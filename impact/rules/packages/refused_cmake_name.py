@@ -1,16 +1,15 @@
-"""refused-cmake-name: CMake does not accept a name that it is given.
+"""refused-cmake-name: CMake rejects the name of a package or target.
 
 What it does
-    Reports names that can never be right: find_package() of an imported target, a second target of a name, and targets
-    whose name holds a slash, those included that ament_python_install_package() makes of its argument.
+    Reports names that CMake never accepts: find_package() of an imported target, a second target with the same name,
+    and target names with a slash, including those that ament_python_install_package() makes from its argument.
 
 Why it breaks
-    CMake finds no package `a::b`, since no file of a configuration can be called so, and stops at a second target of a
-    name and at a slash in one.
+    CMake finds no package `a::b`, since no configuration file has such a name. It stops at a second target with the
+    same name and at a target name with a slash.
 
 Severity
-    error where CMake is sure to stop; warning where the place is not certain to be reached, and for packages that are
-    not REQUIRED.
+    error where CMake always stops; warning where CMake may not reach the place, and for packages that are not REQUIRED.
 
 Example
     find_package(MANIF::manif REQUIRED)
@@ -19,7 +18,7 @@ Use instead
     find_package(manif REQUIRED)
 
 Not reported
-    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that are not known.
+    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that cannot be resolved.
 """
 
 from ...model.cmake.conditions import version_key
@@ -34,9 +33,11 @@ _MAKES_TARGETS = "1.1.0"
 
 @rule(
     texts={
-        "target": Text("`{subject}` is a target; no package is called so", "look for the package that defines it"),
-        "twice": Text("the target `{subject}` is added a second time", "give one of the two another name"),
-        "slash": Text("the name of a target holds a slash: `{subject}`", "write it without one"),
+        "target": Text(
+            "`{subject}` is a target, not a package", "call find_package() with the package that defines the target"
+        ),
+        "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
+        "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),
     },
 )
 def refused_cmake_name(view: TargetView, package: Package):
@@ -51,7 +52,7 @@ def refused_cmake_name(view: TargetView, package: Package):
             seen.add(name)
             doubts = doubts_of_place(view, "build", conditions)
             yield Diagnostic(at, name, package.name, kind="twice", doubts=doubts)
-    refused = ("custom", "executable", "library") if _minimum(package) >= (3,) else ("custom",)
+    refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
     if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
         slashed += [(i.destination, i.at, i.conditions) for i in build.installs if i.kind == "python"]
@@ -60,7 +61,7 @@ def refused_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
 
 
-def _minimum(package: Package) -> tuple[int, ...]:
+def _find_policy_version(package: Package) -> tuple[int, ...]:
     """The version whose policies CMake follows; from 3.0 on it refuses a slash in any name (CMP0037)."""
     lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
     return version_key(upper or lower)

@@ -1,10 +1,10 @@
 """unexported-include-directory: dependants do not get the folder of installed headers, or of what these include.
 
 What it does
-    Reports packages of ament that install headers and a library and export neither include directories nor a target,
-    where another package of the workspace includes them, or only the include directories of a library that nothing in
-    the package links or loads, and packages of headers alone whose installed headers include a system library off the
-    compiler's path that they do not export.
+    Reports ament packages that install headers and a library but export neither include directories nor a target, where
+    another package of the workspace includes the headers; that export only the include directories of a library which
+    nothing in the package links or loads; and header-only packages whose installed headers include a system library
+    outside the compiler's default path that they do not export.
 
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".
@@ -41,7 +41,7 @@ from .ament_exports import AmentExports, exports_something, list_installed_targe
         ),
         "library": Text(
             "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
-            "call ament_export_targets or ament_export_libraries",
+            "call ament_export_targets() or ament_export_libraries()",
         ),
         "include directory": Text(
             "an installed header includes `{header}`, but the include directory of `{subject}` is not exported",
@@ -79,7 +79,7 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
 
 
 def _list_without_library(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
-    """Libraries that are there for dependants alone, and of which these get the headers."""
+    """Libraries that nothing in the package links or loads, and whose headers alone are exported."""
     if "ament_export_include_directories" not in ament.hows or package.build.unresolved or package.digest.registered:
         return
     if any(e.how in _OFFERS or "$" in e.item for e in ament.exports):
@@ -96,9 +96,7 @@ def _list_without_library(view: TargetView, package: Package, ament: AmentExport
 
 
 # What tells dependants about a library, or loads it.
-_OFFERS = frozenset(
-    {"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "plugin_description"}
-)
+_OFFERS = frozenset({"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "plugin_description"})
 
 
 # System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by

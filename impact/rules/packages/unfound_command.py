@@ -1,26 +1,26 @@
-"""unfound-command: a command of another package is called, and CMake never finds that package.
+"""unfound-command: a command of another package is called, but CMakeLists.txt never finds that package.
 
 What it does
-    Reports functions and macros that a released package is known to define where neither it nor anything that brings it
-    is found by the package that calls them.
+    Reports calls of functions and macros that a released package defines, where the caller finds neither that package
+    nor one that brings it.
 
 Why it breaks
     CMake stops: "Unknown CMake command".
 
 Severity
-    error; warning where the call is not certain to be reached, where what is found is not known completely, and in ROS
-    1, where a workspace that is configured at once may have found the package before.
+    error; warning where CMake may not reach the call, where a found package has unknown dependencies, and in ROS 1,
+    where catkin_make configures all packages in one CMake run, so that another one may have found the package before.
 
 Example
     project(visualizer)
-    ament_package()                             # and no find_package(ament_cmake REQUIRED)
+    ament_package()                             # without find_package(ament_cmake REQUIRED)
 
 Use instead
     find_package(ament_cmake REQUIRED)
 
 Not reported
-    Commands that the tree defines; packages that find something whose dependencies are not known; commands for tests
-    that nothing declared brings (undeclared-test-command says it).
+    Commands that the workspace defines; packages that find something that nobody is known to provide; test commands
+    that no declared package brings (undeclared-test-command reports them).
 """
 
 from ...model.view import TargetView
@@ -31,7 +31,10 @@ from .undeclared_test_command import find_test_commands
 
 @rule(
     group="missing-find-package",
-    texts=Text("`{subject}` comes from `{owner}`, which CMake does not find", "add find_package({owner} REQUIRED)"),
+    texts=Text(
+        "command `{subject}` comes from `{owner}`, which CMakeLists.txt does not find",
+        "add find_package({owner} REQUIRED)",
+    ),
 )
 def unfound_command(view: TargetView, package: Package):
     build, commands = package.build, view.providers.commands.get(view.target.ros, {})

@@ -45,7 +45,7 @@ from .install_rules import is_installed, list_installing, list_references
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
         "script": Text("`{subject}` is started by a launch file but is not installed", "{how}"),
-        "beside": Text("`{subject}` is not installed, although other programs beside it are", "{how}"),
+        "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
 def uninstalled_file(view: TargetView):

@@ -1,13 +1,12 @@
 """uninstalled-plugin-description: a description of plugins does not exist, is not installed or is not exported.
 
 What it does
-    Looks up the plugin descriptions that `<export>` of package.xml names with `${prefix}`: the files exist, and in
-    packages of catkin an install rule takes them. A description of plugins in a library of the package has to be
-    exported.
+    Reports plugin descriptions that `<export>` of package.xml names with `${prefix}` but that do not exist, or that a
+    catkin package does not install; and descriptions of plugins in a library of the package that are not exported.
 
 Why it breaks
-    pluginlib reads the description from the install space, and asks package.xml where it lies (ROS 2: the index that
-    pluginlib_export_plugin_description_file() writes). Without it, loading any plugin of the package fails.
+    pluginlib reads the description from the install space, and finds its path in package.xml (ROS 2: in the index
+    that pluginlib_export_plugin_description_file() writes). Without it, loading any plugin of the package fails.
 
 Severity
     error where a library that the description names is installed, so that others expect its plugins; warning otherwise.

@@ -1,13 +1,13 @@
-"""unlinked-own-library: a target uses functions that another library of its package defines, and is not linked to it.
+"""unlinked-own-library: a target uses functions that another library of its package defines, but does not link it.
 
 What it does
-    Reports programs and shared libraries whose own sources include a header of the package and use a function of a
-    class in it that a source of another target defines (`arm.hpp` and `arm.cpp`), where the target neither compiles
-    that source nor reaches a target that does by its links.
+    Reports programs and shared libraries whose sources include a header of the package and use a function of a class in
+    it that is defined in a source of another target (`arm.hpp` and `arm.cpp`), where the target neither compiles that
+    source nor links a target that does, directly or indirectly.
 
 Why it breaks
-    The linker reports undefined references for programs. A shared library is linked all the same, and fails in whatever
-    links or loads it.
+    The linker reports undefined references for programs. A shared library is linked without an error, and fails where a
+    program links or loads it.
 
 Severity
     warning.
@@ -20,8 +20,8 @@ Use instead
     target_link_libraries(wave arm)
 
 Not reported
-    Static libraries; libraries that others of the package link together with it; targets that are given something
-    that cannot be seen; functions that another class may have.
+    Static libraries; libraries that other targets of the package always link together with the defining one; targets
+    that link something whose value is unknown; functions that another class may have.
 """
 
 from ...model.cmake.links import linked_items
@@ -69,7 +69,7 @@ def unlinked_own_library(view: TargetView, package: Package):
                 continue
             users = [given for given in links.values() if given is not None and name in given]
             if users and not any(definers.isdisjoint(given) for given in users):
-                continue  # what links the one links the other
+                continue  # whatever links this target links the definer too
             seen.add((name, other))
             data = {"target": name, "function": function}
             tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)

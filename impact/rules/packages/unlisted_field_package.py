@@ -34,7 +34,7 @@ _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
     group="missing-interface-wiring",
     texts={
         "no field": Text(
-            "a line that begins with `{subject}` is neither a field nor a constant, so the generator stops",
+            "the line that begins with `{subject}` is neither a field nor a constant",
             "write `package/Type name`",
         ),
         "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),

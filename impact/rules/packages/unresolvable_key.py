@@ -9,9 +9,9 @@ Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
 
 Severity
-    error, since `rosdep install` stops; note for names never seen in public, which may belong to a private repository;
-    warning for those of them that have the form of a key (`python3-x`, `libx-dev`, `x-pip`), or that one released
-    package is called after (`x_vendor`).
+    error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
+    repository; warning for unknown names in the form of a key (`python3-x`, `libx-dev`, `x-pip`), and for a name `x` if
+    exactly one package or key such as `x_vendor` or `libx-dev` exists.
 
 Example
     <depend>Eigen3</depend>
@@ -20,8 +20,8 @@ Use instead
     <depend>eigen</depend>
 
 Not reported
-    Packages that some distro has released (unreleased-package says it), dependencies under a condition that does not
-    hold on the target, and names listed in `[workspace] private`.
+    Packages that some distro has released (unreleased-package reports them), dependencies under a condition that does
+    not hold on the target, and names listed in `[workspace] private` or `installed`.
 """
 
 import re
@@ -77,7 +77,7 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-        elif relative := _relative_of(view, name):
+        elif relative := _find_namesake(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
@@ -89,7 +89,7 @@ def unresolvable_key(view: TargetView, package: Package):
 _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip")
 
 
-def _relative_of(view: TargetView, name: str) -> str:
+def _find_namesake(view: TargetView, name: str) -> str:
     """The one package or key that a library's bare name may stand for, by what those of ROS and Debian are called;
     empty where there is none, or several."""
     found = [f"{name}_vendor", f"ros_{name}", f"lib{name}-dev", f"python3-{name}"] if len(name) > 3 else []

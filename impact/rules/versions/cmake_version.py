@@ -5,7 +5,7 @@ What it does
     reports commands, modules and policies that only newer versions of CMake have.
 
 Why it breaks
-    CMake stops when a project asks for a newer CMake or uses what that brought, and since 4.0 when it asks for
+    CMake stops when a project asks for a newer CMake or uses a feature of one, and since 4.0 when it asks for
     compatibility with less than 3.5.
 
 Severity
@@ -36,7 +36,10 @@ from ..rule import Diagnostic, Text, rule
             "`cmake_minimum_required` asks for CMake {subject}, but the target has {version}",
             help="ask for at most CMake {version}",
         ),
-        "feature": Text("`{subject}` is not available in CMake {version} (added in {since})", "do without it there"),
+        "feature": Text(
+            "`{subject}` is not available in CMake {version} (added in {since})",
+            "use it only if CMAKE_VERSION is {since} or newer",
+        ),
         "older": Text(
             "CMake {version} does not accept projects for CMake {subject}",
             help="write `cmake_minimum_required(VERSION 3.5)` or newer",
@@ -53,7 +56,7 @@ def cmake_version(view: TargetView, package: Package):
 
 
 def _compare_minimum(package: Package, cmake: str) -> Generator[Diagnostic, None, bool]:
-    """What speaks against the version that is asked for; True where it is newer than the target's."""
+    """Reports a version that does not fit; returns True where it is newer than the target's."""
     if package.build.minimum is None:
         return False
     text, at = package.build.minimum

@@ -1,12 +1,12 @@
-"""hard-coded-distro: code names the folder of another distro than the one it is checked for.
+"""hard-coded-distro: code contains the /opt/ros path of a distro other than the target's.
 
 What it does
     Reports paths below /opt/ros/<distro> in scripts, CMake code, launch files, Python and C++ of packages, and in
     scripts of the workspace, where the distro is not the target's.
 
 Why it breaks
-    The folder is not there on a machine with the target's distro alone, or belongs to an installation that does not fit
-    it.
+    The folder does not exist on a machine that has only the target's distro. On a machine with both, the code mixes two
+    distros.
 
 Severity
     warning; note in examples and documentation.
@@ -18,9 +18,9 @@ Use instead
     source /opt/ros/$ROS_DISTRO/setup.bash
 
 Not reported
-    Comments and messages; paths under a condition, or in files that ask for ROS_DISTRO or also name the target's
-    distro; files and folders that are called after another distro; distros of the other generation of ROS, which a
-    bridge needs beside the target's; tests; scripts beside a Dockerfile, which run in its image.
+    Comments and messages; paths under a condition; files that read ROS_DISTRO or also name the target's distro; files
+    and folders named after a distro; distros of the other ROS generation, which a bridge needs; tests; folders such as
+    third_party; scripts beside a Dockerfile, which run in its image.
 """
 
 import posixpath
@@ -42,8 +42,8 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
     severity="warning",
     preview=True,
     texts=Text(
-        "`{subject}` is hard-coded, but is not the folder of {distro}",
-        help="take the distro from the environment variable ROS_DISTRO",
+        "`{subject}` is hard-coded, but the target is {distro}",
+        help="use the environment variable ROS_DISTRO",
     ),
 )
 def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
@@ -72,4 +72,3 @@ def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role
             reported.add(use.distro)
             doubts = (*doubts_of_place(view, role), Doubt.LATE)
             yield Diagnostic(At(path, use.line, use.column), use.text, package, {"distro": own}, doubts=doubts)
-

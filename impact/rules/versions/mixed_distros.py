@@ -1,15 +1,15 @@
 """mixed-distros: a Dockerfile or CI job installs or sources a distro that its image cannot have.
 
 What it does
-    Compares the image that a stage of a Dockerfile or a CI job runs in, and the ROS_DISTRO that it is set to, with the
-    Debian packages `ros-<distro>-*` and the folders /opt/ros/<distro> that it names; and those packages with what the
-    distro has released.
+    For each stage of a Dockerfile and each CI job, compares the distro of its image and of ROS_DISTRO with the Debian
+    packages `ros-<distro>-*` and the folders /opt/ros/<distro> that it names. Also reports Debian packages that their
+    distro has not released.
 
 Why it breaks
     "E: Unable to locate package", or "No such file or directory", when the image is built.
 
 Severity
-    warning: the workspace itself is built elsewhere too.
+    warning, since the workspace may be built elsewhere too.
 
 Example
     FROM ros:jazzy
@@ -20,8 +20,9 @@ Use instead
     RUN apt-get update && apt-get install -y ros-jazzy-nav2-bringup
 
 Not reported
-    Stages and jobs in which a variable, a matrix or a condition decides; distros of the same platform, whose packages
-    can be installed side by side; packages that no distro has ever released, which may come from another archive.
+    Stages and jobs with a variable, a matrix or a condition for the image or distro; distros of the same platform,
+    whose packages can be installed side by side; packages that no distro has ever released, which may come from another
+    archive.
 """
 
 from collections.abc import Iterator
@@ -42,7 +43,7 @@ from ..rule import Diagnostic, Text, rule
     preview=True,
     texts={
         "": Text("`{subject}` does not exist in an image of {distro}", help="write `{instead}`"),
-        "never": Text("`{subject}` does not exist: {distro} has no release of {name}[[, which {last} has]]"),
+        "never": Text("`{subject}` does not exist: {name} is not released in {distro}[[, but in {last}]]"),
     },
 )
 def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
@@ -53,13 +54,13 @@ def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
             own = _find_distro(part)
             for use in part.uses:
                 if use.distro in names and use.text not in reported:
-                    for diagnostic in _judge(path, use, own):
+                    for diagnostic in _check_use(path, use, own):
                         reported.add(use.text)
                         yield diagnostic
 
 
 def _find_distro(part: ContainerPart) -> str:
-    """The one distro that a part runs with; empty where none or several are named, or something decides."""
+    """The one distro that a part runs with; empty where that is not known."""
     if part.open:
         return ""
     images = (parse_image(image, known_distros()) for image in part.images)
@@ -70,7 +71,7 @@ def _find_distro(part: ContainerPart) -> str:
     return next(iter(both)) if len(both) == 1 and (found or not part.images) else ""
 
 
-def _judge(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
+def _check_use(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
     at = At(path, use.line, use.column)
     if own and use.distro != own and _target(use.distro).platform != _target(own).platform:
         data = {"distro": own, "instead": use.text.replace(use.distro, own, 1)}

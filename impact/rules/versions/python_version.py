@@ -34,7 +34,10 @@ from ..rule import Diagnostic, Text, doubts_of_place, rule
         "python 2": Text(
             "{subject} is a syntax error in Python {version}[[ ({horizon})]]", "use syntax that Python 3 accepts"
         ),
-        "python 3": Text("{subject} is a syntax error in Python 2, which runs it", "name python3 in its first line"),
+        "python 3": Text(
+            "{subject} is a syntax error in Python 2, which runs this file",
+            "start the file with `#!/usr/bin/env python3`",
+        ),
         "newer": Text(
             "{subject} needs Python {needs}, but the target has {version}",
             "use syntax that the Python of every target accepts",

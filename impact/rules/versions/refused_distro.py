@@ -1,10 +1,10 @@
 """refused-distro: CMakeLists.txt stops with an error on a target.
 
 What it does
-    Reports message(FATAL_ERROR) under conditions on the distro that surely hold on the target.
+    Reports message(FATAL_ERROR) under conditions on ROS_DISTRO that hold on the target.
 
 Why it breaks
-    Configuring the package ends there, with the message of its author.
+    CMake stops with this message when it configures the package.
 
 Severity
     error.
@@ -22,7 +22,7 @@ Use instead
     endif()
 
 Not reported
-    Conditions that are not known to hold, and those that ask nothing of the distro.
+    Conditions that cannot be decided, and those that do not test ROS_DISTRO.
 """
 
 from collections.abc import Iterator
