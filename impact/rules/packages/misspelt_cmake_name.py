@@ -24,7 +24,7 @@ Not reported
 """
 
 from ...model.cmake.links import stops_at_names
-from ...model.misspelling import SpellingIndex
+from ...model.misspelling import SpellingIndex, folded
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Replace, Text, rule
@@ -58,7 +58,7 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
             continue
         meant = near.nearest(name)
-        if meant is not None and _may_install_any(view, meant):
+        if meant is not None and _may_install_any(view, meant, name):
             continue
         if meant is not None and meant != name and view.target.ever_released(name) is False:
             doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
@@ -66,11 +66,15 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
 
 
-def _may_install_any(view: TargetView, name: str) -> bool:
-    """Whether a released package is built by plain CMake, which gives configurations any name (protobuf_comm installs
-    `ProtobufComm`), or by what is not known, and is not known to install one of its own name."""
-    outside = name not in view.workspace.packages and view.target.version(name) is not None
-    return outside and view.target.build_type(name) in ("cmake", "") and not view.providers.cmake(name)
+def _may_install_any(view: TargetView, meant: str, name: str) -> bool:
+    """Whether a released package, of which it is not known what it installs, may give a configuration this name: one
+    of plain CMake, or built by what is not known (protobuf_comm installs `ProtobufComm`); of ament, a name with other
+    separators (kuka_external_control_sdk installs `kuka-external-control-sdk`)."""
+    if meant in view.workspace.packages or view.target.version(meant) is None or view.providers.cmake(meant):
+        return False
+    if view.target.build_type(meant) in ("cmake", ""):
+        return True
+    return view.offers.package(meant) is None and folded(meant) == folded(name)
 
 
 def _list_named(view: TargetView, package: Package):
