@@ -95,7 +95,8 @@ def draw(distros: Path, excluded: Iterable[str], number: int, share_ros2: float,
 def find_revision(root: Path, ledger: Path) -> str:
     """The commit that is checked out. Raises SystemExit if a file but the ledger differs from it, or is not in it."""
     status = run_git(root, "status", "--porcelain", "-z").split("\0")
-    changed = [line[3:] for line in status if line and root / line[3:] != ledger]
+    ours = (line[3:] for line in status if line and not line.endswith("__pycache__/"))
+    changed = [name for name in ours if root / name != ledger]
     if changed:
         raise SystemExit(f"first_sight: not scored, {changed[0]} is not committed; a row of the ledger names a commit")
     return run_git(root, "rev-parse", "HEAD").strip()

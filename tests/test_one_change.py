@@ -249,9 +249,9 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeyp
             whole = [list(rule.run(view)) for rule in rules]
             digests = [package.digest for package in opened.workspace]
             unseen: object = _Unseen()
-            # The identity speaks of what was not read, too.
-            ros, unread = opened.workspace.ros, opened.workspace.unread
-            bare = Workspace(digests, unseen, ros, unseen, unseen, unread=unread)  # type: ignore[arg-type]
+            # The identity speaks of what was not read, and of files outside of packages, too.
+            ros, unread, outside = opened.workspace.ros, opened.workspace.unread, opened.workspace.outside
+            bare = Workspace(digests, unseen, ros, unseen, unseen, unread=unread, outside=outside)  # type: ignore[arg-type]
             again = TargetView(bare, view.target, view.providers, view.config)
             assert [list(rule.run(again)) for rule in rules] == whole
 

@@ -103,6 +103,34 @@ class Package:
         return (f"{self.path}/{folder}" if self.path else folder) in self.folders
 
 
+class FilesOutside:
+    """What files say that belong to no package."""
+
+    def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
+        self._gathered = gathered
+        self._scripts = [path for path in gathered.paths("shell", "script") if discovered.owner(path) is None]
+        self._containers = [path for path in gathered.paths("dockerfile", "ci") if not is_vendored(path)]
+
+    @property
+    def identity(self) -> bytes:
+        """Differs whenever one of them does."""
+        ids = [(path, self._gathered.ids[path]) for path in (*self._scripts, *self._containers)]
+        return repr(ids).encode("utf-8", "backslashreplace")
+
+    @cached_property
+    def distro_scripts(self) -> dict[str, DistroFile]:
+        """Shell scripts that name folders of distros."""
+        self._gathered.preload(self._scripts)
+        found = ((path, self._gathered.facts(path).distros) for path in self._scripts)
+        return {path: distros for path, distros in found if distros is not None}
+
+    @cached_property
+    def containers(self) -> dict[str, ContainerFile]:
+        """The workspace's own Dockerfiles and CI files."""
+        self._gathered.preload(self._containers)
+        return {path: self._gathered.facts(path).facts for path in self._containers}
+
+
 class Workspace:
     """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""
 
@@ -116,11 +144,13 @@ class Workspace:
         identity: bytes = b"",
         whole: bool = True,
         unread: frozenset[str] = frozenset(),
+        outside: FilesOutside | None = None,
     ):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
         # Files and folders that were not read, as submodules that are not checked out.
         self.unread = unread
+        self.outside = outside or FilesOutside(discovered, gathered)
         # Differs whenever a digest, their order or the generation does.
         self.identity = identity
         # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
@@ -150,21 +180,6 @@ class Workspace:
         """Whether a file or folder was not read, lies in a folder that was not, or holds such ones."""
         inside = itertools.accumulate(path.split("/"), "{}/{}".format)
         return path in self._around_unread or not self.unread.isdisjoint(inside)
-
-    @cached_property
-    def distro_scripts(self) -> dict[str, DistroFile]:
-        """Shell scripts outside of all packages that name folders of distros."""
-        scripts = _list_scripts(self.discovered, self.gathered)
-        self.gathered.preload(scripts)
-        found = ((path, self.gathered.facts(path).distros) for path in scripts)
-        return {path: distros for path, distros in found if distros is not None}
-
-    @cached_property
-    def containers(self) -> dict[str, ContainerFile]:
-        """The workspace's own Dockerfiles and CI files."""
-        paths = [path for path in self.gathered.paths("dockerfile", "ci") if not is_vendored(path)]
-        self.gathered.preload(paths)
-        return {path: self.gathered.facts(path).facts for path in paths}
 
     @cached_property
     def headers(self) -> dict[str, list[str]]:
@@ -423,15 +438,10 @@ def link(
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
     digests = linker.digests(store)
-    scripts = [(path, gathered.ids[path]) for path in _list_scripts(discovered, gathered)]
-    linker.identity.update(repr(scripts).encode("utf-8", "backslashreplace"))
+    outside = FilesOutside(discovered, gathered)
+    linker.identity.update(outside.identity)
     identity = linker.identity.digest()
-    return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread)
-
-
-def _list_scripts(discovered: Discovered, gathered: ExtractedFacts) -> list[str]:
-    """Shell scripts outside of all packages."""
-    return [path for path in gathered.paths("shell", "script") if discovered.owner(path) is None]
+    return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread, outside)
 
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:

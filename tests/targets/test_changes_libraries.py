@@ -12,6 +12,7 @@ class Machine(Target):
     """A target that only has libraries."""
 
     def __init__(self, python_major: int = 3, **libraries: str):
+        self.platform = "ubuntu focal"
         self.distro, self.ros, self.python_major = "noetic", 1, python_major
         self.libraries = {name.replace("_", "-"): version for name, version in libraries.items()}
 

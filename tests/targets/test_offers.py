@@ -219,7 +219,7 @@ def test_an_override_of_what_moved_to_a_base_and_changed_there_is_judged_by_the_
         for n in (1, 2, 3, 4)
     ]  # fmt: skip
     assert found[:3] == [None, None, None]
-    assert (found[3].state, found[3].form, found[3].symbol.name) == ("changed", "override", "arm::Part::tick")
+    assert (found[3].state, found[3].form, found[3].symbol.name) == ("changed", "override", "arm::Arm::tick")
 
 
 def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):

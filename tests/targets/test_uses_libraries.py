@@ -22,6 +22,7 @@ class Machine(Target):
     """A target that only has libraries and packages of these versions."""
 
     def __init__(self, **versions: str):
+        self.platform = "ubuntu focal"
         self.distro, self.ros, self.python_major = "noetic", 1, 3
         self.versions = {name.replace("_", "-"): version for name, version in versions.items()}
 

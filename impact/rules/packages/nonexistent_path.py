@@ -135,9 +135,11 @@ def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, st
     if use.how in ("link", "include"):
         return "", ""
     if path.startswith("../") or (package.path and not f"{path}/".startswith(f"{package.path}/")):
-        is_there = path.startswith("../") or path in view.workspace.gathered.ids
-        is_there = is_there or any(path in other.folders for other in view.everyone())
-        return ("outside", posixpath.relpath(path, package.path or ".")) if is_there else ("", "")
+        # What lies in another package has to be there; of what lies in none, the packages cannot tell.
+        owner = next((other for other in view.everyone() if path.startswith(f"{other.path}/")), None)
+        if owner is not None and path not in owner.files and path not in owner.folders:
+            return "", ""
+        return "outside", posixpath.relpath(path, package.path or ".")
     file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
     if use.how == "install" or (use.how == "read" and not file.endswith((".cmake", ".txt"))):
         return "", ""

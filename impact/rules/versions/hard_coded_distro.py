@@ -51,7 +51,7 @@ def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
         for path, file in package.digest.distros:
             role = role_of_folder(path[len(package.path) :].lstrip("/")) or "run"
             yield from _list_uses(view, path, file, package.name, role)
-    for path, file in view.workspace.distro_scripts.items():
+    for path, file in view.workspace.outside.distro_scripts.items():
         yield from _list_uses(view, path, file, "", role_of_folder(path) or "run")
 
 
@@ -62,7 +62,7 @@ def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role
     if own not in DISTROS or own in file.words.split() or is_vendored(path) or role == "test":
         return
     # What lies beside a Dockerfile is copied into its image, whose distro is not the target's.
-    if any(posixpath.dirname(other) == posixpath.dirname(path) for other in view.workspace.containers):
+    if any(posixpath.dirname(other) == posixpath.dirname(path) for other in view.workspace.outside.containers):
         return
     if any(word in DISTROS for word in re.split(r"[^a-z]+", path.lower())):
         return

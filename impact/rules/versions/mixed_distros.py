@@ -48,7 +48,7 @@ from ..rule import Diagnostic, Text, rule
 )
 def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
     names = {known.name for known in known_distros()}
-    for path, file in workspace.containers.items():
+    for path, file in workspace.outside.containers.items():
         reported: set[str] = set()
         for part in file.parts:
             own = _find_distro(part)
