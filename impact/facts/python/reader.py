@@ -87,6 +87,7 @@ class PythonReader(ObjectUses, SourceText):
         self.uses: dict[tuple[PythonScope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         # Names that nothing in the file binds, see bound.py.
         self.unbound: frozenset[str] = frozenset()
+        self.main_lines = range(0)
         self.assigned: set[tuple[PythonScope, str]] = set()
         self.imported_names: list[AttributeUse] = []
         self.references: dict[Reference, None] = {}
@@ -244,7 +245,10 @@ class PythonReader(ObjectUses, SourceText):
         """The first use of each name that nothing binds, a sure one where there is any; and calls of methods that only
         Python 2 has and the file does not define, each with its dot."""
         found: dict[str, AttributeUse] = {}
+        is_program = bool(self.lines) and self.lines[0].startswith("#!")
+        unstarted = range(0) if is_program else self.main_lines
         for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
+            lazy = lazy or line in unstarted
             head = text.partition(".")[0]
             if head not in self.unbound and head:
                 continue
@@ -349,6 +353,7 @@ class PythonReader(ObjectUses, SourceText):
         self.visit(node.test)
         if "__main__" in test and "__name__" in test:
             self.main = True
+            self.main_lines = range(node.body[0].lineno, (node.body[-1].end_lineno or 0) + 1)
             self.block(node.body)
             self.block(node.orelse)
             return
