@@ -360,10 +360,20 @@ def of_row(symbol: Symbol, change: ChangeInForce) -> Availability:
                         earlier=earlier)  # fmt: skip
 
 
+_SEVERAL = 3
+"""Commands that go with one version, when no command is left."""
+
+
 def decides(offer: PackageOffer, offered: Offered) -> bool:
     """Whether what is known of a name rests on versions that were read: not on a branch, which may hold something else
-    than the release, and not on one of two stored versions that differ in this, with the target's between them."""
+    than the release, and not on one of two stored versions that differ in this, with the target's between them. Where
+    all commands of CMake are gone at once, they may be installed in a way that is not read (a configuration that a
+    macro of the package writes)."""
     line = offer.line
+    if offered.what == "command" and offered.here is None and not offer.build.commands:
+        changed = (line.versions[event.place] for events in line.events["command"].values() for event in events)
+        if sum(version == offered.first for version in changed) >= _SEVERAL:
+            return False
     if any(version in line.approximate for version in (offer.stored, offered.last, offered.first)):
         return False
     return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])

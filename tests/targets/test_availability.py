@@ -20,6 +20,8 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
         ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
         ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "unknown", "", ""),
         ("jazzy", Symbol("header", "octomap_msgs/conversions.h", ("octomap_msgs",)), "unknown", "", ""),
+        # A macro of the package writes its configuration since 0.2.15, so that no command is seen.
+        ("noetic", Symbol("command", "target_cxx_version", ("ros_industrial_cmake_boilerplate",)), "unknown", "", ""),
         ("jazzy", Symbol("package", "nav2_recoveries"), "removed", "humble", "nav2_behaviors"),
         ("jazzy", Symbol("package", "rclcpp"), "present", "", ""),
         ("jazzy", Symbol("package", "no_such_package_at_all"), "unknown", "", ""),
