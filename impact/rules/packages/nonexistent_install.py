@@ -26,7 +26,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..rule import Diagnostic, Doubt, Text, rule
 from .install_rules import list_installing
 
 
@@ -100,6 +100,10 @@ _PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_E
 
 def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
+    others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
+    # A package whose CMake is not known may set variables of its own that are called so.
+    unknown = any(view.offers.package(name) is None for name in others if view.is_package(name))
+    doubts = (Doubt.INCOMPLETE,) if unknown else ()
     seen = set()
     for use in package.build.uses:
         if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
@@ -112,4 +116,4 @@ def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
             continue
         seen.add(use.name)
         kind = "unset, build" if use.name == "CATKIN_BUILD_PREFIX" else "unset"
-        yield Diagnostic(use.at, use.name, package.name, kind=kind)
+        yield Diagnostic(use.at, use.name, package.name, kind=kind, doubts=doubts)
