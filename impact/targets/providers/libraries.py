@@ -109,12 +109,13 @@ class SystemLibraries:
     def has(self, library: str, header: str) -> bool:
         """Whether some version of a library has a header."""
         known = self._headers(library)
-        return any(path in known for path in _written(header, self._roots(library)))
+        return any(f"\n{path}\n".encode() in known for path in _written(header, self._roots(library)))
 
-    @lru_cache(maxsize=256)  # noqa: B019
-    def _headers(self, library: str) -> frozenset[str]:
+    @lru_cache(maxsize=64)  # noqa: B019
+    def _headers(self, library: str) -> bytes:
+        """All headers of a library, each in a line; as texts of their own those of Boost alone took megabytes."""
         (data,) = self._file.columns("SELECT headers FROM package WHERE name = ?", library)
-        return frozenset(zstandard.ZstdDecompressor().decompress(data).decode().split("\n"))
+        return b"\n" + zstandard.ZstdDecompressor().decompress(data) + b"\n"
 
     def included(self, header: str, platform: str) -> Including | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
