@@ -166,8 +166,9 @@ class ChangingName:
 
 
 def _others(standing: Standing) -> list[Form]:
-    """The forms that versions beside one have and that are not as it has it."""
-    return [form for form in (standing.before, standing.after) if form is not None and form != standing.here]
+    """The forms that other versions have and that are not as one has it."""
+    forms = (*(event.had for event in standing.past), *(event.has for event in standing.future))
+    return [form for form in forms if form is not None and form != standing.here]
 
 
 def _has_other_default(standing: Standing) -> bool:

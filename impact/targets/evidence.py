@@ -117,7 +117,9 @@ def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
         return evidence
     sides = ("command", "target", "variable") if evidence.side == "cmake" else (evidence.side,)
     for side in sides:
-        event = _deciding(evidence.change, side, line.events.get(side, {}).get(evidence.name, ()), place)
+        events = line.events.get(side, {}).get(evidence.name, ())
+        event = next((one for one in events if evidence.stored and line.versions[one.place] == evidence.first), None)
+        event = event or _deciding(evidence.change, side, events, place)
         if event is not None and event.place:
             last, first = line.versions[event.place - 1], line.versions[event.place]
             found = evidence._replace(side=side, last=last, first=first, new_in=(), stored=True)

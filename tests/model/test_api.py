@@ -292,6 +292,21 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
 
 
 @pytest.mark.parametrize(
+    ("before", "shown"),
+    [("static rmw_qos_profile_t v = f();", "profile"), ("const rclcpp::QoS & v = f();", "qos"),
+     ("auto v = rmw_qos_profile_default;", "profile"), ("auto v = rclcpp::SensorDataQoS();", "qos"),
+     ("auto v = f();", ""), ("QoS v(3);", ""), ("", "profile"),
+     ("auto v =\n#if A\n rclcpp::QoS(1);\n#else\n rmw_qos_profile_default;\n#endif\n", ""),
+     ("#if A\n rclcpp::QoS v;\n#else\n rmw_qos_profile_t v;\n#endif\n", "")],
+)  # fmt: skip
+def test_what_a_variable_shows_itself_to_be(before, shown, changes):
+    vocabulary = Vocabulary(["arm"], "mine", changes)
+    found = resolver(f"class C {{ rmw_qos_profile_t v; void g() {{\n{before} call(v); }} }};", vocabulary)
+    (use,) = found.known.code.uses(["call"])
+    assert ApiUses(found).shown(use.call[0], use.place) == shown
+
+
+@pytest.mark.parametrize(
     ("parameter", "type_"),
     [("const A & a", "const A&"), ("const A &", "const A&"), ("int", "int"), ("unsigned int n = 3", "unsigned int"),
      ("std::vector< A > v", "std::vector<A>"), ("A * const * p", "A*const*"), ("const A", "const A")],

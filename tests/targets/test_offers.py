@@ -237,6 +237,21 @@ def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
     assert (call("5.0.0").form, call("5.0.0").symbol.name) == ("arguments", "arm::Part::move")
 
 
+def test_a_call_is_judged_by_every_change_of_the_function_not_by_the_last_alone(store):
+    codes = "void f(int);", "void f(int, rmw_qos_profile_t);", "void f(int, rclcpp::QoS);", "void f(long, rclcpp::QoS);"
+    surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate(codes, 1)))
+
+    def call(version, *given):
+        found = availability_of_use(Offers(target(arm=version), surfaces), "arm", "f", "call", len(given), given)
+        return found and (found.form, found.since, found.earlier, found.evidence.last)
+
+    assert call("4.0.0", "integer") == ("arguments", "2.0.0", True, "1.0.0")
+    assert call("4.0.0", "", "profile") == ("types", "3.0.0", True, "2.0.0")
+    assert call("1.0.0", "", "qos") == ("arguments", "2.0.0", False, "")
+    assert call("2.0.0", "", "qos") == ("types", "3.0.0", False, "1.0.0")
+    assert call("4.0.0", "", "qos") is None and call("2.0.0", "", "profile") is None
+
+
 @pytest.mark.parametrize(
     ("codes", "how", "arguments", "given", "kinds"),
     [

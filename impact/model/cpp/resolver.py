@@ -515,6 +515,17 @@ class Resolver:
         ]
         return found[0] if found and all(one == found[0] for one in found) else None
 
+    def written_type(self, name: Expr, place: CodePlace) -> str:
+        """The type that a variable, parameter or own member is declared with, as it is written there; empty where that
+        is not to be told."""
+        if name.local is not None:
+            return name.local.type if name.local.how in ("variable", "parameter") else ""
+        for one in self.line_of_own(place.owner) if place.owner and "::" not in name.text else ():
+            written = {each.type for each in one.members.get(name.text, ()) if each.kind == "variable"}
+            if written:
+                return written.pop() if len(written) == 1 else ""
+        return ""
+
     def _declared_type(self, those: Iterable[Declaration], place: CodePlace, kind: str) -> CppType | None:
         """What several declarations of one name give, where they agree."""
         found = {self.type_of(one.type, place) if one.type and "auto" not in one.type else None

@@ -17,9 +17,16 @@ _SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
 _SHOWN = {
     shown: re.compile(pattern)
     for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("qos", r"QoS"), ("profile", r"qos"),
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("qos", r"(?i:qos)"),
+        ("profile", r"(?i:qos|profile)"),
     )
 }  # fmt: skip
+# The types of quality of service: those of rclcpp, and the structure of rmw which they replaced.
+_QOS_TYPES = {
+    "qos": re.compile(r"(?:static |const )*rclcpp\s*::\s*\w*QoS\s*&?"),
+    "profile": re.compile(r"(?:static |const |struct )*rmw_qos_profile_[ts]\s*&?"),
+}
+_DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
@@ -258,7 +265,8 @@ class ApiUses:
         if kind == "name":
             if argument.text == "NULL":
                 return "null"
-            return "profile" if argument.text.startswith("rmw_qos_profile_") else ""
+            made = argument.text.startswith("rmw_qos_profile_")
+            return "profile" if made else self._shown_by_variable(argument, place)
         if kind not in ("call", "braces"):
             return ""
         callee = argument.parts[0] if kind == "call" else None
@@ -268,6 +276,17 @@ class ApiUses:
         if callee is not None and callee.kind == "member":
             return "profile" if name == "get_rmw_qos_profile" else ""
         return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
+
+    def _shown_by_variable(self, name: Expr, place: CodePlace) -> str:
+        """The same of a variable, by the type that it is declared with, or by what it begins with; empty where a
+        directive stands between its declaration and here, which may leave that out."""
+        local = name.local
+        if local is not None and _DIRECTIVE.search(self.resolver.known.code.text, local.offset, name.offset):
+            return ""
+        if local is not None and "auto" in local.type:
+            return self.shown(local.value, place) if local.value is not None and local.how == "variable" else ""
+        type_ = self.resolver.written_type(name, place)
+        return next((shown for shown, known in _QOS_TYPES.items() if known.fullmatch(type_)), "")
 
     def _overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""

@@ -226,6 +226,34 @@ class PackageOffer:
         return declarations(self._offers.history(self.package), side, name, version)
 
 
+def other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
+    """The other forms of a name, the nearest first: an event, the form on the other side of it, and whether that is of
+    earlier versions."""
+    offer = offers.package(offered.package)
+    events = offer.line.events.get(offered.side, {}).get(offered.name, ()) if offer is not None else ()
+    for event in reversed(events):
+        if offer is not None and event.place <= offer.place and event.had is not None:
+            yield event, event.had, True
+    for event in events:
+        if offer is not None and event.place > offer.place and event.has is not None:
+            yield event, event.has, False
+
+
+def offered_by(offers: Offers, offered: Offered, event: ChangeEvent, earlier: bool) -> Offered:
+    """A name as one of its changes tells of it, where a use of it fits the form on the other side of that change.
+    earlier: the target's version has that change already."""
+    offer = offers.package(offered.package)
+    assert offer is not None
+    version = offer.line.versions[event.place]
+    if not earlier:
+        return offered._replace(after=event.has, coming=version)
+    return offered._replace(
+        before=event.had, last=offer.line.versions[event.place - 1], first=version, told=event.told,
+        instead=next((one.instead for one in event.told if one.instead), ""),
+        sure=all(one.sure >= 1 for one in event.told),
+    )  # fmt: skip
+
+
 def declarations(history: SurfaceHistory | None, side: str, name: str, version: str) -> tuple[str, ...]:
     """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
     else."""

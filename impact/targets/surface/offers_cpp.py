@@ -14,7 +14,7 @@ from ..evidence import of_offered
 from ..symbol import Availability, State, Symbol
 from ..version import at_least
 from .changes import Form, Overload
-from .offers import Offered, Offers, PackageOffer, declarations
+from .offers import Offered, Offers, PackageOffer, declarations, offered_by, other_forms
 from .overrides import Override, virtual_forms
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def _of_what_is_there(
         return _found("deprecated", offered)
     if how != "call" or arguments < 0:
         return None
-    return _call(offered, arguments, given) or (None if templated else _untold(offers, offered, arguments))
+    return _call(offers, offered, arguments, given) or (None if templated else _untold(offers, offered, arguments))
 
 
 def _inherited(
@@ -169,21 +169,21 @@ def _is_alias(offers: Offers, package: str, name: str) -> bool:
     return any("kind" in told.aspects or told.what == "alias" for event in events for told in event.told)
 
 
-def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
+def _call(offers: Offers, offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
     here = callable_forms(offered.here)
     if not here:
         return None
     if offered.what == "constructor" and arguments < 2:
         return None  # what the compiler makes by itself is not told
     if not any(one.accepts(arguments) for one in here):
-        for form, earlier in ((offered.before, True), (offered.after, False)):
+        for event, form, earlier in other_forms(offers, offered):
             if any(one.accepts(arguments) for one in callable_forms(form)):
-                return _found("changed", offered, "arguments", earlier)
+                return _found("changed", offered_by(offers, offered, event, earlier), "arguments", earlier)
         return None
     if any(given) and not any(_takes(one, given) for one in here if one.accepts(arguments)):
-        for form, earlier in ((offered.before, True), (offered.after, False)):
+        for event, form, earlier in other_forms(offers, offered):
             if any(one.accepts(arguments) and _takes(one, given) for one in callable_forms(form)):
-                return _found("changed", offered, "types", earlier)
+                return _found("changed", offered_by(offers, offered, event, earlier), "types", earlier)
         return None
     if offered.first and all(told.kind == "default" for told in offered.told):
         relying = [one for one in here if one.accepts(arguments) and (one.most < 0 or arguments < one.most)]

@@ -4,15 +4,17 @@ declares it, where another version did or does."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ...facts.surface import Entity
-from .changes import ChangeEvent, Form, Overload, overload_of
+from .changes import Form, Overload, overload_of
+from .offers import Offered, offered_by, other_forms
 
 if TYPE_CHECKING:
-    from .offers import Offered, Offers
+    from .changes import ChangeEvent
+    from .offers import Offers
 
 _RESULT = "-> "
 
@@ -63,16 +65,16 @@ class Override:
         for package, name in line:
             offer = self.offers.package(package)
             offered = offer.get("c++", name) if offer is not None else None
-            for event, form, earlier in _forms(self.offers, offered) if offered is not None else ():
+            for event, form, earlier in other_forms(self.offers, offered) if offered is not None else ():
                 # A method that is not to override anything need not do so yet.
                 mine = [one for one in virtual_forms(form) if self._fits(one)] if earlier or self.says_so else []
                 if offered is None or not mine:
                     continue
                 if fitting:
                     if self._gives_other(offered, event, earlier, fitting):
-                        return self._changed(offered, event, earlier), earlier
+                        return offered_by(self.offers, offered, event, earlier), earlier
                 elif all(self._surely_differs(overload_of(one), mine, form, offered) for one in here):
-                    return self._changed(offered, event, earlier), earlier
+                    return offered_by(self.offers, offered, event, earlier), earlier
         return None
 
     def _entities(self, package: str, name: str, version: str = "") -> list[Entity]:
@@ -83,17 +85,6 @@ class Override:
     def _virtual(self, package: str, name: str, version: str = "") -> list[Entity]:
         """The methods of a name that may be overridden."""
         return [one for one in self._entities(package, name, version) if "virtual" in one.traits]
-
-    def _changed(self, offered: Offered, event: ChangeEvent, earlier: bool) -> Offered:
-        """What is offered, told by an event."""
-        if not earlier:
-            return offered
-        offer = self.offers.package(offered.package)
-        assert offer is not None
-        versions = offer.line.versions
-        return offered._replace(
-            before=event.had, last=versions[event.place - 1], first=versions[event.place], told=event.told
-        )
 
     def _fits(self, overload: Overload) -> bool:
         """Whether the method can be the same as another, as their types are written."""
@@ -175,19 +166,6 @@ class Override:
 _FUNDAMENTAL = frozenset(("void", "bool", "char", "int", "unsigned int", "float", "double"))
 _POINTERS = frozenset(("SharedPtr", "ConstSharedPtr", "WeakPtr", "ConstWeakPtr", "UniquePtr"))
 _TYPES = frozenset(("class", "struct", "enum"))
-
-
-def _forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
-    """The other forms of a name, the nearest first: an event, the form on the other side of it, and whether that is of
-    earlier versions."""
-    offer = offers.package(offered.package)
-    events = offer.line.events.get(offered.side, {}).get(offered.name, ()) if offer is not None else ()
-    for event in reversed(events):
-        if offer is not None and event.place <= offer.place and event.had is not None:
-            yield event, event.had, True
-    for event in events:
-        if offer is not None and event.place > offer.place and event.has is not None:
-            yield event, event.has, False
 
 
 @lru_cache(maxsize=4096)
