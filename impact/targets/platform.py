@@ -53,6 +53,8 @@ def normal_platform(text: str) -> str:
     words = re.sub(r"[\s:_/-]+", " ", text.strip().lower()).strip()
     if words in _KNOWN:
         return _KNOWN[words]
+    if words in ("conda", "conda forge"):
+        return "conda-forge"
     os_name, _, release = words.partition(" ")
     match = re.match(r"\d+(\.\d+)?", release)
     if match:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
 
 _DPKG = ".dpkg.txt"
-_OTHER_SYSTEMS = frozenset(("conda", "robostack", "macos", "windows"))
+_OTHER_SYSTEMS = frozenset(("conda-forge", "robostack", "macos", "windows"))
 """Systems that ROS runs on and rosdep has no rules for."""
 _OTHER_RELEASES = frozenset(("sid", "unstable", "testing", "stable", "oldstable", "devel", "artful", "cosmic", "disco",
                              "eoan", "groovy", "hirsute", "impish", "kinetic", "lunar", "mantic", "oracular", "plucky",

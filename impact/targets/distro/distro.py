@@ -24,6 +24,7 @@ from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
 from ..version import number_of
+from .conda import CHANNELS, libraries_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
 from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
 
@@ -579,6 +580,9 @@ class DistroTarget(Target):
 
     @cached_method
     def _libraries(self) -> dict[str, Library]:
+        if self.platform in CHANNELS:
+            pinned = libraries_of(self.platform, self.distro, self.date)
+            return {name: Library(version, f"pins of {channel}") for name, (version, channel) in pinned.items()}
         return {
             name: Library(version, source)
             for name, version, source in self._data.rows(
@@ -597,6 +601,8 @@ class DistroTarget(Target):
         wanted = library_name(name)
         if wanted in self._own_libraries:
             return self._own_libraries[wanted] or None
+        if self.platform in CHANNELS:
+            return cell.version if (cell := self._libraries().get(wanted)) else None
         instead = self._facts.libraries_from.get(wanted) if self._facts else None
         if instead and (version := self.version(instead)):
             return version

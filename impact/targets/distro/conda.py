@@ -1,0 +1,42 @@
+"""The versions of libraries that conda-forge and RoboStack build against, by day: data/conda.json, see DATA.md."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+
+import msgspec
+
+from ..snapshot import DATA, SnapshotError
+
+CHANNELS = frozenset(("conda-forge", "robostack"))
+"""Platforms that this knows: conda-forge, and RoboStack, which holds a distro's packages to versions of its own."""
+
+_Rows = dict[str, dict[str, str]]
+
+
+@cache
+def _table() -> dict[str, _Rows]:
+    try:
+        return msgspec.json.decode((DATA / "conda.json").read_bytes(), type=dict[str, _Rows])
+    except (OSError, msgspec.DecodeError):
+        raise SnapshotError("conda.json cannot be read; install rosimpact again") from None
+
+
+def libraries_of(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:
+    """The version of each library on a day, with the channel that states it; empty for other platforms. Raises
+    SnapshotError."""
+    if platform not in CHANNELS:
+        return {}
+    found: dict[str, tuple[str, str]] = {}
+    for channel in ("conda-forge", distro) if platform == "robostack" else ("conda-forge",):
+        for name, rows in _table().get(channel, {}).items():
+            version = _last(rows, day)
+            if version:
+                found[name] = version, channel
+    return found
+
+
+def _last(rows: Mapping[str, str], day: str) -> str:
+    """The version that stands on a day, of versions by the first day of each, oldest first."""
+    return next((version for since, version in reversed(rows.items()) if since <= day), "")
