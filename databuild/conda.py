@@ -1,9 +1,9 @@
 """Versions of libraries in conda-forge and in RoboStack's distros by day, from the history of their pins.
 
 What is built there is built against the versions that `conda_build_config.yaml` pins on that day: conda-forge's own,
-and those that RoboStack puts in their place for a distro. A pin of a major version alone (`3.*`) means the newest of them
-that the recipe had by then, where the clone of the recipe is at hand. Of several values that a Linux build may have,
-nothing is kept.
+and those that RoboStack puts in their place for a distro. A pin that leaves last numbers open (`3.*`) means the newest
+version that the recipe had by then, where the clone of the recipe is at hand. Of several values that a Linux build may
+have, nothing is kept.
 
     python -P -m rosimpact.databuild.conda CLONES       # OWNER+NAME: conda-forge+conda-forge-pinning-feedstock,
                                                         # RoboStack+ros-DISTRO, conda-forge+NAME-feedstock
