@@ -159,6 +159,9 @@ def read_workspace(
         discovered = discover(tree, gathered)
         ros = generation(discovered, gathered)
         targets = choose_targets(options.targets, config, ros, tree)
+        asked = {chosen.target.ros for chosen in targets}
+        if len(asked) == 1:
+            ros = asked.pop()  # a package for both generations is built as this one does
         yield Read(tree, store, gathered, discovered, ros, targets, config, tracked_names)
 
 
