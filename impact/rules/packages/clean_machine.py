@@ -32,6 +32,8 @@ def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str)
         return (Doubt.DISPENSABLE,)
     if not need.certain:
         return (Doubt.DISPENSABLE,)
+    if need.how == "environment":
+        return (Doubt.LUCKY,)
     if need.how == "include":
         return _of_include(view, package, need, name)
     doubts = _unknown(view, package, need, name)

@@ -37,6 +37,8 @@ def _find_undeclared(view: TargetView, package: Package) -> Undeclared:
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
+        if need.how == "environment" and view.answered(need.providers, closure):
+            continue
         name = name_to_declare(view, need)
         if name is not None and name != package.name and name not in elsewhere:
             kind = found.borrowed if view.answered(need.providers, closure) else found.missing
@@ -59,6 +61,7 @@ def _describe_use(need: Need) -> str:
         "part": f"CMake looks for the component `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
         "program": f"CMake runs `{need.subject}`",
+        "environment": f"CMake reads the environment variable `{need.subject}`",
         "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
