@@ -959,10 +959,11 @@ class Interpreter:
         self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None
 
     def use_environment(self, test: str, at: At) -> None:
-        """Notes the environment variables of ROS whose value a test reads, and that no other one found defined."""
-        defined = " ".join(held.text for held in self.conditions)
+        """Notes the environment variables of ROS whose value a test reads, where no test asks whether they are set."""
+        tests_around = [test, *(held.text for held in self.conditions)]
         for name in dict.fromkeys(_ROS_ENVIRONMENT.findall(test)):
-            if not self.silent and f"DEFINED ENV{{{name}}}" not in f"{defined} {test}":
+            asks = re.compile(rf'DEFINED ENV\{{{name}\}}|(?:NOT )?\$ENV\{{{name}\}}(?: STREQUAL "")?\Z')
+            if not self.silent and not any(map(asks.search, tests_around)):
                 self.uses[UnknownCommand("environment", name, self.place(at), "", self.conditions)] = None
 
     def find_alike(self, name: str) -> str:
