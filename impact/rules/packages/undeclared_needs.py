@@ -85,6 +85,8 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
 def _tag(need: Need, manifest_format: int) -> str:
     if need.role == "test":
         return "test_depend"
+    if need.how == "environment":
+        return "build_depend"
     if need.how in ("import", "launch", "plugin", "shell"):
         return "exec_depend" if manifest_format > 1 else "run_depend"
     return "depend" if manifest_format > 1 else "build_depend"
