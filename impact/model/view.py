@@ -49,9 +49,9 @@ class Need(NamedTuple):
     """Something a package uses of somebody else.
 
     how: find_package, part (a component of it), component (of catkin), pkg-config, program, environment, include,
-    import, launch, plugin or shell. subject: as written. providers: who could give it, best first. role: build, test, run or aside.
-    certain: stands under no condition that is unknown on the target. required: its absence stops the configuration
-    (find_package) or the program.
+    import, launch, plugin or shell. subject: as written. providers: who could give it, best first. role: build, test,
+    run or aside. certain: stands under no condition that is unknown on the target. required: its absence stops the
+    configuration (find_package) or the program.
     """
 
     how: str
@@ -66,8 +66,8 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0, "include": 1, "import": 2, "plugin": 3,
-    "launch": 4, "shell": 5,
+    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0, "include": 1,
+    "import": 2, "plugin": 3, "launch": 4, "shell": 5,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 

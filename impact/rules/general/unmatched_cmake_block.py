@@ -1,8 +1,9 @@
 """unmatched-cmake-block: a block or a command of CMake code is not closed, or a block closed without being opened.
 
 What it does
-    Reports the first command of a CMakeLists.txt that no parenthesis closes; else the first `if()`, `foreach()`, `while()`, `function()`, `macro()` or `block()` of a file that is not closed,
-    or the first `endif()` and the like without its beginning.
+    Reports the first command of a CMakeLists.txt that no parenthesis closes; else the first `if()`, `foreach()`,
+    `while()`, `function()`, `macro()` or `block()` of a file that is not closed, or the first `endif()` and the like
+    without its beginning.
 
 Why it breaks
     CMake stops with an error while it configures the package.

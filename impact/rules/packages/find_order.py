@@ -23,7 +23,8 @@ Use instead
     find_package(Eigen3 REQUIRED)
 
 Not reported
-    Python, where generated interfaces or the module PythonExtra find it along; packages under a condition that is unknown on the target, and find modules that the tree itself carries.
+    Python, where generated interfaces or the module PythonExtra find it along; packages under a condition that is
+    unknown on the target, and find modules that the tree itself carries.
 """
 
 import re

@@ -6,8 +6,8 @@ What it does
     from its argument.
 
 Why it breaks
-    CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second target with the
-    same name and at a target name with a slash.
+    CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
+    target with the same name and at a target name with a slash.
 
 Severity
     error where CMake always stops; warning where CMake may not reach the place, and for packages that are not REQUIRED.

@@ -2,8 +2,8 @@
 
 What it does
     Reports `${X_LIBRARIES}` in target_link_libraries() that no find_package or pkg_check_modules of the package sets,
-    where X is a library that is known; `${QT_LIBRARIES}` of Qt 4 where a later Qt alone is found; and pkg_check_modules() whose first argument, the prefix of its variables, is
-    REQUIRED.
+    where X is a library that is known; `${QT_LIBRARIES}` of Qt 4 where a later Qt alone is found; and
+    pkg_check_modules() whose first argument, the prefix of its variables, is REQUIRED.
 
 Why it breaks
     CMake takes an unknown variable as empty, and the linker misses the library.
@@ -45,7 +45,8 @@ _SET_ALONG = re.compile(
     texts={
         "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
         "qt": Text(
-            "`{variable}` is set by find_package(Qt4) alone, and `{found}` is found", "link targets of Qt, such as `Qt5::Widgets`"
+            "`{variable}` is set by find_package(Qt4) alone, and `{found}` is found",
+            "link targets of Qt, such as `Qt5::Widgets`",
         ),
         "unset module": Text(
             "`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"
