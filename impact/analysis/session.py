@@ -159,9 +159,6 @@ def read_workspace(
         discovered = discover(tree, gathered)
         ros = generation(discovered, gathered)
         targets = choose_targets(options.targets, config, ros, tree)
-        asked = {chosen.target.ros for chosen in targets}
-        if len(asked) == 1:
-            ros = asked.pop()  # a package for both generations is built as this one does
         yield Read(tree, store, gathered, discovered, ros, targets, config, tracked_names)
 
 
@@ -174,6 +171,9 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
 
     tree, store, gathered, discovered, ros, targets, config, tracked_names = read
     asked_versions = AskedVersions(chosen.target for chosen in targets)
+    generations = {chosen.target.ros for chosen in targets}
+    if len(generations) == 1:
+        (ros,) = generations  # packages for both are linked as the targets build them
     workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
     gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)

@@ -752,7 +752,7 @@ class TargetView:
     def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
         platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
-        package; released libraries of others that are called like it may bring it too."""
+        package; released libraries that are called like it and whose contents are not stored may bring it too."""
         if package.name not in self._opaque:
             self._opaque[package.name] = [
                 n for n in self.closure(package)
@@ -765,12 +765,12 @@ class TargetView:
         return [*self._opaque[package.name], *unread]
 
     def _is_unread_library(self, name: str) -> bool:
-        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson: its own build
-        works out what it installs."""
+        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson, and what it
+        installs is not stored."""
         if name in self.workspace.packages or self.target.version(name) is None:
             return False
         types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
-        return not types.isdisjoint(("cmake", "meson"))
+        return not types.isdisjoint(("cmake", "meson")) and self.offers.package(name) is None
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
