@@ -1035,14 +1035,17 @@ class TargetView:
             )
 
     def _environment_read(self, package: Package) -> Iterator[Need]:
-        """Environment variables of ROS that CMake tests, or stops without; before ros_environment, roslib set them."""
+        """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
+        ros_environment, or before that roslib."""
+        providers = Provider("ros", "ros_environment"), Provider("ros", "roslib")
+        if self.answered(providers, self.closure(package)):
+            return
         read = [(use.name, use.at, use.conditions) for use in package.build.uses if use.kind == "environment"]
         for at, _, conditions in package.build.stops:
             undefined = [c for c in conditions if c.text.startswith("NOT ") != c.negated and _DEFINED.search(c.text)]
             read += [(_DEFINED.search(c.text)[1], at, tuple(o for o in conditions if o is not c)) for c in undefined]
         for name, at, conditions in read:
             if self.active(conditions):
-                providers = Provider("ros", "ros_environment"), Provider("ros", "roslib")
                 role = "test" if for_tests(conditions) else "build"
                 yield Need("environment", name, providers, at, role, self.certain(conditions))
 
