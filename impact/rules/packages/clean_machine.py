@@ -12,7 +12,7 @@ from ...model.workspace import Package
 from ..evidence import circular
 from ..rule import Doubt
 
-ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
+ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
 _STARTED = frozenset(("launch", "plugin", "shell"))
 TEST_HEADERS = ("gtest/", "gmock/")

@@ -51,7 +51,7 @@ def undeclared_package(view: TargetView, package: Package):
     firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
-        at_run_time = first.how not in (*ASKED, "environment", "include")
+        at_run_time = first.how not in (*ASKED, "include")
         yield Diagnostic(
             first.at,
             name,
