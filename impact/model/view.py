@@ -1042,8 +1042,10 @@ class TargetView:
             return
         read = [(use.name, use.at, use.conditions) for use in package.build.uses if use.kind == "environment"]
         for at, _, conditions in package.build.stops:
-            undefined = [c for c in conditions if c.text.startswith("NOT ") != c.negated and _DEFINED.search(c.text)]
-            read += [(_DEFINED.search(c.text)[1], at, tuple(o for o in conditions if o is not c)) for c in undefined]
+            for test in conditions:
+                asked = _DEFINED.search(test.text)
+                if asked and test.text.startswith("NOT ") != test.negated:
+                    read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
         for name, at, conditions in read:
             if self.active(conditions):
                 role = "test" if for_tests(conditions) else "build"
