@@ -48,10 +48,10 @@ _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, part (a component of it), component (of catkin), pkg-config, program, include, import, launch,
-    plugin or shell. subject: as written. providers: who could give it, best first. role: build, test, run or aside.
-    certain: stands under no condition that is unknown on the target. required: its absence stops the configuration
-    (find_package) or the program.
+    how: find_package, part (a component of it), component (of catkin), pkg-config, program, environment, include,
+    import, launch, plugin or shell. subject: as written. providers: who could give it, best first. role: build, test,
+    run or aside. certain: stands under no condition that is unknown on the target. required: its absence stops the
+    configuration (find_package) or the program.
     """
 
     how: str
@@ -66,8 +66,8 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "include": 1, "import": 2, "plugin": 3,
-    "launch": 4, "shell": 5,
+    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0, "include": 1,
+    "import": 2, "plugin": 3, "launch": 4, "shell": 5,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
@@ -82,6 +82,8 @@ _INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
 _WITH_INTERFACES = (
     "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
 )  # fmt: skip
+
+_DEFINED = re.compile(r"\bDEFINED ENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
 # How packages are called (REP 144).
 _PACKAGE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)+\Z")
@@ -984,6 +986,8 @@ class TargetView:
                 or self._is_called(package, found.name),
             )
             yield from self._parts_asked(found, testing, certain)
+        if self.target.version("ros_environment") is not None:
+            yield from self._environment_read(package)
         for include in digest.includes:
             if not self.active(include.conditions):
                 continue
@@ -1029,6 +1033,23 @@ class TargetView:
                 not reference.conditional,
                 not reference.conditional,
             )
+
+    def _environment_read(self, package: Package) -> Iterator[Need]:
+        """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
+        ros_environment, or before that roslib."""
+        providers = Provider("ros", "ros_environment"), Provider("ros", "roslib")
+        if self.answered(providers, self.closure(package)):
+            return
+        read = [(use.name, use.at, use.conditions) for use in package.build.uses if use.kind == "environment"]
+        for at, _, conditions in package.build.stops:
+            for test in conditions:
+                asked = _DEFINED.search(test.text)
+                if asked and test.text.startswith("NOT ") != test.negated:
+                    read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
+        for name, at, conditions in read:
+            if self.active(conditions):
+                role = "test" if for_tests(conditions) else "build"
+                yield Need("environment", name, providers, at, role, self.certain(conditions))
 
     def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or

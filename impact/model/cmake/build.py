@@ -172,7 +172,8 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
     for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
-    module or policy of CMake itself, the version that brought it. alike: of a variable that nothing can have set, one
+    module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
+    sets, read by a test. alike: of a variable that nothing can have set, one
     that is set there and has one word more or less in its name."""
 
     kind: str

@@ -85,6 +85,9 @@ _NEEDS_VALUES = frozenset(
     {"install", "add_subdirectory", "add_library", "add_executable", "target_link_libraries", "target_sources"}
 )
 
+# What the setup files of ros_environment set, where it is installed.
+_ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
+
 # Commands that name targets of the package.
 _ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
 
@@ -502,6 +505,7 @@ class Interpreter:
         if value is not None:
             return value, ""
         text = self.shown(tests.text_of(tokens))
+        self.use_environment(text, head.at)
         for held in self.conditions:
             if held.text == text and held.language == "cmake":
                 return not held.negated, text
@@ -953,6 +957,14 @@ class Interpreter:
         ):
             return
         self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None
+
+    def use_environment(self, test: str, at: At) -> None:
+        """Notes the environment variables of ROS whose value a test reads, where no test asks whether they are set."""
+        tests_around = [test, *(held.text for held in self.conditions)]
+        for name in dict.fromkeys(_ROS_ENVIRONMENT.findall(test)):
+            asks = re.compile(rf'DEFINED ENV\{{{name}\}}|(?:NOT )?\$ENV\{{{name}\}}(?: STREQUAL "")?\Z')
+            if not self.silent and not any(map(asks.search, tests_around)):
+                self.uses[UnknownCommand("environment", name, self.place(at), "", self.conditions)] = None
 
     def find_alike(self, name: str) -> str:
         """The variable that is set and has one word more or less in its name than one that a command which needs its

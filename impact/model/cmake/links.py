@@ -116,5 +116,5 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
             conditions = (*target.conditions, *link.conditions)
             if not view.certain(conditions) or "$" in link.item or link.item in own or for_tests(conditions):
                 continue
-            if link.how == "ament" and view.is_package(link.item):
+            if link.how == "ament":
                 yield link.at, link.item

@@ -1,5 +1,6 @@
 """What is known of the headers that packages include, as the rules on them ask for it."""
 
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -116,18 +117,26 @@ def included_headers(view: TargetView) -> IncludedHeaders:
 
 # Letters of a file's name: shorter ones are alike by chance.
 _SHORTEST = 8
+_ENDING = re.compile(r"\.(?:h|hh|hpp|hxx)\Z")
+_OF_RECONFIGURE = re.compile(r"(?P<package>\w+)/\w+Config\.h\Z")
 
 
 def find_misspelt(view: TargetView, package: Package, path: str) -> str | None:
-    """The header of the package that an include path misses by one letter; None where somebody has what it names."""
-    if view.header(path) or len(path.rpartition("/")[2]) < _SHORTEST:
+    """The header of the package that an include path means: it misses it by one letter, by case or ending, or names a
+    generated one below what is no package. None where somebody has what it names."""
+    answered = any(provider.sure or provider.name != package.name for provider in view.header(path))
+    if answered or len(path.rpartition("/")[2]) < _SHORTEST:
         return None
     bare = "/" not in path
     for header in package.digest.headers:
         own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
-        if is_slip(path, own):
+        if is_slip(path, own) or _ENDING.sub("", path).lower() == _ENDING.sub("", own).lower():
             return own
-    return None
+    generated = _OF_RECONFIGURE.match(path)
+    if generated is None or not any(made.how == "reconfigure" for made in package.build.generated):
+        return None
+    known = view.is_package(generated["package"]) or generated["package"] in view.declared(package)
+    return None if known else f"{package.name}/{path.rpartition('/')[2]}"
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:

@@ -90,12 +90,22 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
         if lost is None or not view.breaks_under(lost, conditions):
             continue
         if not (lost.library and _may_be_made(view, package, name)):
-            yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL,))
+            alone = not lost.library or not _may_be_built(view, package, name)
+            yield diagnose(
+                lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
+            )
+
+
+def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
+    """Whether a package that comes along is called like a system library, and so may have another version of it."""
+    space = _fold(name.partition("::")[0])
+    found = (one.name for one in package.build.found if one.how == "find_package")
+    return any(space in _fold(one) for one in view.spread(found) if view.is_package(one))
 
 
 def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
-    """Whether a target of a system library may come from something else than its own configuration: a find module, or
-    what a package that is found brings."""
+    """Whether a target of a system library may come from something else than its own configuration: a find module, its
+    own or of a package that is found."""
     space = _fold(name.partition("::")[0])
     found = [one.name for one in package.build.found if one.how == "find_package"]
     named = [one for one in found if _fold(one) == space]
@@ -103,7 +113,7 @@ def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
         not named
         or bool(package.build.unresolved)
         or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
-        or any(space in _fold(one) for one in view.spread(found) if view.is_package(one))
+        or any(provider.kind == "ros" for one in named for provider in view.cmake(one)[:1])
     )
 
 

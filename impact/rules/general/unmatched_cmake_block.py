@@ -1,14 +1,15 @@
-"""unmatched-cmake-block: a block of CMake code is not closed, or closed without being opened.
+"""unmatched-cmake-block: a block or a command of CMake code is not closed, or a block closed without being opened.
 
 What it does
-    Reports the first `if()`, `foreach()`, `while()`, `function()`, `macro()` or `block()` of a file that is not closed,
-    or the first `endif()` and the like without its beginning.
+    Reports the first command of a CMakeLists.txt that no parenthesis closes; else the first `if()`, `foreach()`,
+    `while()`, `function()`, `macro()` or `block()` of a file that is not closed, or the first `endif()` and the like
+    without its beginning.
 
 Why it breaks
     CMake stops with an error while it configures the package.
 
 Severity
-    warning.
+    error for a command; warning for a block.
 
 Example
     if(BUILD_TESTING)
@@ -20,21 +21,27 @@ Use instead
     endif()
 
 Not reported
-    Files that could not be parsed at all, see unreadable-file.
+    Other files that could not be parsed, see unreadable-file.
 """
 
+import re
+
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..rule import Diagnostic, Doubt, Text, rule
 
 _BLOCKS = ("if", "foreach", "while", "function", "macro", "block")
+_UNCLOSED = re.compile(r"(\w+)\(\) is never closed")
 _ENDS = ("is never closed", *(f"without {block}()" for block in _BLOCKS))
 
 
 @rule(
     scope="workspace",
-    severity="warning",
     group="unreadable-file",
-    texts=Text("{problem}, and CMake stops here", help="close the block"),
+    texts={
+        "block": Text("{problem}, and CMake stops here", help="close the block"),
+        "command": Text("`{subject}()` is never closed, and CMake stops here", help="close the parenthesis"),
+    },
 )
 def unmatched_cmake_block(workspace: Workspace):
     for package in workspace:
@@ -43,4 +50,10 @@ def unmatched_cmake_block(workspace: Workspace):
         for at, reason in package.build.unresolved:
             if at.path not in reported and reason.endswith(_ENDS):
                 reported.add(at.path)
-                yield Diagnostic(at, at.path.rpartition("/")[2], package.name, {"problem": reason})
+                data = {"problem": reason}
+                yield Diagnostic(at, at.path.rpartition("/")[2], package.name, data, "block", (Doubt.INCOMPLETE,))
+        for path, line, message in package.digest.problems:
+            unclosed = _UNCLOSED.fullmatch(message)
+            if unclosed and path in package.build.files and path.endswith("CMakeLists.txt"):
+                yield Diagnostic(At(path, line), unclosed[1], package.name, {}, "command")
+                break

@@ -12,7 +12,7 @@ from ...model.workspace import Package
 from ..evidence import circular
 from ..rule import Doubt
 
-ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program"))
+ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
 _STARTED = frozenset(("launch", "plugin", "shell"))
 TEST_HEADERS = ("gtest/", "gmock/")
@@ -32,6 +32,8 @@ def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str)
         return (Doubt.DISPENSABLE,)
     if not need.certain:
         return (Doubt.DISPENSABLE,)
+    if need.how == "environment":
+        return (Doubt.LUCKY,)
     if need.how == "include":
         return _of_include(view, package, need, name)
     doubts = _unknown(view, package, need, name)

@@ -23,10 +23,14 @@ Not reported
     Packages that come with another one that is found; headers of the C and C++ libraries.
 """
 
+from collections.abc import Iterator
+
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
+from ...model.misspelling import SpellingIndex
 from ...model.view import TargetView, interface_of
 from ...model.workspace import Package
+from ...targets.providers.libraries import system_libraries
 from ...targets.version import at_least
 from ..rule import Diagnostic, Doubt, Text, rule
 from .unset_library_variable import fold
@@ -67,13 +71,16 @@ def missing_find_package(view: TargetView, package: Package):
     built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
     closure = view.closure(package)
+    near, prefixes = SpellingIndex({*view.declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):
         if name in reachable or name in seen or name in package.digest.modules or name == package.name:
             continue
         seen.add(name)
+        if not view.is_package(name) and (name in prefixes or view.cmake(name) or near.nearest(name)):
+            continue  # a library, or a name that is misspelt
         # The configuration of a library whose contents are not known may find others.
-        opaque = any(view.opaque_libraries(package, f.name) for f in package.build.found)
+        opaque = not view.is_package(name) or any(view.opaque_libraries(package, f.name) for f in package.build.found)
         doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
@@ -99,7 +106,19 @@ def missing_find_package(view: TargetView, package: Package):
         seen.add(name)
         counts = name in view.declared(package) and ros and not header_only
         doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
+        folder = "" if ros or not shipped.intersection(need.targets) else system_libraries().folder(need.subject)
+        if folder and not any(folder in item or "$" in item for item in _list_given(package, need)):
+            doubts = (Doubt.INCOMPLETE,)
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
+
+
+def _list_given(package: Package, need) -> Iterator[str]:
+    """What the targets that include a header are given, themselves or all targets."""
+    yield from (item for item, _ in package.build.include_dirs)
+    yield from (link.item for link in package.build.links)
+    for target in package.build.targets:
+        if target.name in need.targets:
+            yield from (link.item for link in target.links)
 
 
 def _doubt_of_include(view: TargetView, need) -> Doubt | None:

@@ -4,8 +4,9 @@ What it does
     Reports files that neither exist nor are made by the build: sources of targets, files given to test commands, files
     that include() and add_subdirectory() read, and launch files, parameter files and robot descriptions that a launch
     file opens in the share folder of a package of the workspace. Also reports paths in CMake that exist only in some
-    places: outside the package's folder (`../common.cmake`), in a user's home folder, and below `${CMAKE_SOURCE_DIR}`
-    as if the build always started in a folder above the package.
+    places: outside the package's folder (`../common.cmake`), in a user's home folder, below `${CMAKE_SOURCE_DIR}` as if
+    the build always started in a folder above the package, and libraries linked by the folder that some system has them
+    in (`/usr/lib/libompl.so`).
 
 Why it breaks
     CMake stops: "Cannot find source file", "could not find requested file". A release contains only the package's
@@ -119,13 +120,14 @@ def _runs_file(target: BuildTarget, path: str) -> bool:
     return target.kind == "test" and target.sources == (path,) and not re.search(r"\.(?:c|cc|cpp|cxx)\Z", path)
 
 
+_LIBRARY = re.compile(r"/(?:usr|opt|lib)/.+\.(?:so[\d.]*|a)\Z")
 _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 
 
 def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
     """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
     path = posixpath.normpath(use.path)
-    if _HOME.match(path):
+    if _HOME.match(path) or (use.how == "link" and _LIBRARY.match(path)):
         return "machine", path
     if re.search(r"[$*?<>\[\]]", path) or path.startswith("/"):
         return "", ""

@@ -1,12 +1,13 @@
 """refused-cmake-name: CMake rejects the name of a package or target.
 
 What it does
-    Reports names that CMake never accepts: find_package() of an imported target, a second target with the same name,
-    and target names with a slash, including those that ament_python_install_package() makes from its argument.
+    Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
+    target with the same name, and target names with a slash, including those that ament_python_install_package() makes
+    from its argument.
 
 Why it breaks
-    CMake finds no package `a::b`, since no configuration file has such a name. It stops at a second target with the
-    same name and at a target name with a slash.
+    CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
+    target with the same name and at a target name with a slash.
 
 Severity
     error where CMake always stops; warning where CMake may not reach the place, and for packages that are not REQUIRED.
@@ -36,6 +37,10 @@ _MAKES_TARGETS = "1.1.0"
         "target": Text(
             "`{subject}` is a target, not a package", "call find_package() with the package that defines the target"
         ),
+        "debian": Text(
+            "`{subject}` is a package of Debian, not a CMake package",
+            "declare it in package.xml, and call find_package() with the name of its CMake configuration",
+        ),
         "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
         "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),
     },
@@ -46,6 +51,9 @@ def refused_cmake_name(view: TargetView, package: Package):
         if found.how == "find_package" and "::" in found.name and view.active(found.conditions):
             doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
             yield Diagnostic(found.at, found.name, package.name, kind="target", doubts=doubts)
+        elif found.how in ("find_package", "catkin") and _is_of_debian(view, package, found.name):
+            doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
+            yield Diagnostic(found.at, found.name, package.name, kind="debian", doubts=doubts)
     seen = set()
     for name, at, conditions in build.repeated:
         if name not in seen and view.active(conditions):
@@ -59,6 +67,14 @@ def refused_cmake_name(view: TargetView, package: Package):
     for name, at, conditions in slashed:
         if "/" in name and "$" not in name and view.active(conditions):
             yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
+
+
+def _is_of_debian(view: TargetView, package: Package, name: str) -> bool:
+    """Whether a name is that of a Debian package which is not known to have a configuration of this name."""
+    if not (name.endswith("-dev") or name.startswith("python3-")) or name in view.workspace.find_modules:
+        return False
+    known = view.target.known_key(name) or view.providers.knows_system((name,))
+    return known and not view.cmake(name) and not view.is_package(name) and not package.build.unresolved
 
 
 def _find_policy_version(package: Package) -> tuple[int, ...]:

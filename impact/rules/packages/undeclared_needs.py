@@ -59,6 +59,7 @@ def _describe_use(need: Need) -> str:
         "part": f"CMake looks for the component `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
         "program": f"CMake runs `{need.subject}`",
+        "environment": f"CMake reads the environment variable `{need.subject}`",
         "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
@@ -82,6 +83,8 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
 def _tag(need: Need, manifest_format: int) -> str:
     if need.role == "test":
         return "test_depend"
+    if need.how == "environment":
+        return "build_depend"
     if need.how in ("import", "launch", "plugin", "shell"):
         return "exec_depend" if manifest_format > 1 else "run_depend"
     return "depend" if manifest_format > 1 else "build_depend"

@@ -2,9 +2,9 @@
 
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
-    files or scripts start, programs that ExternalProject_Add or FetchContent start, and components with a package of
-    their own, when neither the manifest nor anything it declares brings them, directly or in turn. What a rosdep key's
-    packages depend on comes along.
+    files or scripts start, programs that ExternalProject_Add or FetchContent start, components with a package of their
+    own, and environment variables that CMake tests and `ros_environment` sets, when neither the manifest nor anything
+    it declares brings them, directly or in turn. What a rosdep key's packages depend on comes along.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
@@ -16,10 +16,10 @@ Severity
     package on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of
     something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
-    along. warning: tests of ROS 1, imports, launch files, installed headers that nothing here compiles, or where a
-    dependency is known nowhere and may bring it (one called as interfaces are brings interfaces). note: conditional
-    code, examples, documentation, files that nothing compiles, and all but the first few imports and launch references
-    of a package.
+    along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
+    compiles, or where a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces).
+    note: conditional code, examples, documentation, files that nothing compiles, and all but the first few imports and
+    launch references of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen

@@ -2,8 +2,8 @@
 
 What it does
     Reports `${X_LIBRARIES}` in target_link_libraries() that no find_package or pkg_check_modules of the package sets,
-    where X is a library that is known, and pkg_check_modules() whose first argument, the prefix of its variables, is
-    REQUIRED.
+    where X is a library that is known; `${QT_LIBRARIES}` of Qt 4 where a later Qt alone is found; and
+    pkg_check_modules() whose first argument, the prefix of its variables, is REQUIRED.
 
 Why it breaks
     CMake takes an unknown variable as empty, and the linker misses the library.
@@ -44,6 +44,10 @@ _SET_ALONG = re.compile(
     group="missing-find-package",
     texts={
         "unset": Text("`{variable}` is linked, but nothing sets it", "find_package({stem} REQUIRED)"),
+        "qt": Text(
+            "`{variable}` is set by find_package(Qt4) alone, and `{found}` is found",
+            "link targets of Qt, such as `Qt5::Widgets`",
+        ),
         "unset module": Text(
             "`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"
         ),
@@ -66,6 +70,7 @@ def _list_unset(view: TargetView, package):
         return
     sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
     reachable = {fold(name) for name in view.spread(f.name for f in build.found)}
+    qt = {f.name for f in build.found if f.name.startswith("Qt")}
     seen = set()
     for use in build.uses:
         match = (
@@ -75,6 +80,12 @@ def _list_unset(view: TargetView, package):
             continue
         stem = match.group(1)
         folded = fold(stem)
+        later = next((name for name in qt if name not in ("Qt", "Qt4")), "")
+        if use.name == "QT_LIBRARIES" and later and qt.isdisjoint(("Qt", "Qt4")):
+            seen.add(use.name)
+            data = {"variable": use.name, "found": later}
+            yield Diagnostic(use.at, use.name, package.name, data, "qt", (Doubt.INCOMPLETE,))
+            continue
         if not folded or _SET_ALONG.match(stem) or view.is_package(stem):
             continue
         if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):

@@ -166,6 +166,14 @@ class SystemLibraries:
         )
         return Linking(library, bool(libraries), libraries, names)
 
+    @cached_method
+    def folder(self, header: str) -> str:
+        """The folder below the system's include folder that a header lies in, so that compilers find it only where they
+        are told to look there; empty where its path leads to it, or it is of no library that was read."""
+        library = self.of_header(header)
+        inner = (root for root in self._roots(library) if "linux-gnu" not in root) if library else ()
+        return next((root for root in inner if default_providers().header(f"{root}/{header}")), "")
+
     def target(self, name: str, platform: str, version_of: Callable[[str], str | None]) -> Presence | None:
         """How a platform stands to a CMake target that a library exports in some version; None where none does.
         version_of: the platform's version of a library, where that is known."""
