@@ -160,15 +160,16 @@ class SystemLibraries:
         (data,) = self._file.columns("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
         return _decode_block(zstandard.ZstdDecompressor().decompress(data))
 
-    def _header(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], str] | None:
-        """What a header includes in a version, and the stems of the libraries in its package; None where the version
-        has no such header."""
+    def _state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
+        """The same with the one state that it has in a version; None where the version has no such header."""
         found = self._states(library, path)
         if found is None:
             return None
-        (every, states), place = found, self._places(library)[version]
-        state = next((state for state in states if there(state.spans, place)), None)
-        return (tuple(every[number] for number in state.includes), state.links) if state is not None else None
+        place = self._places(library)[version]
+        for state in found[1]:
+            if there(state.spans, place):
+                return found[0], state
+        return None
 
     @cached_method
     def _places(self, library: str) -> dict[str, int]:
@@ -187,9 +188,10 @@ class SystemLibraries:
         known = False
         for version in (before, after):
             for path in _written(header, self._roots(library)):
-                if (state := self._header(library, version, path)) is not None:
-                    has = partial(self._header, library, version)
-                    found.update((path_of(one, path, has), None) for one in state[0])
+                if (stored := self._state(library, version, path)) is not None:
+                    every, state = stored
+                    has = partial(self._state, library, version)
+                    found.update((path_of(every[number], path, has), None) for number in state.includes)
                     known = True
                     break
         return Including(library, before, tuple(found)) if known else None
@@ -208,11 +210,11 @@ class SystemLibraries:
         build = self.build(library, version) if version else None
         if build is None:
             return None
-        states = (self._header(library, version, path) for path in _written(header, build.include_dirs))
-        state = next(filter(None, states), None)
-        if state is None:
+        states = (self._state(library, version, path) for path in _written(header, build.include_dirs))
+        stored = next(filter(None, states), None)
+        if stored is None:
             return None
-        libraries = tuple(state[1].split())
+        libraries = tuple(stored[1].links.split())
         mine = set(libraries)
         configs = (one.split(" ") for one in build.pkgconfig)
         names = (

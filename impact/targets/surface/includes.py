@@ -91,7 +91,7 @@ def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
 
 def there(spans: Sequence[int], place: int) -> bool:
     """Whether a place lies in some spans; none at all are all places."""
-    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
+    return not spans or any([spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2)])
 
 
 def unpack(data: bytes) -> Included:
