@@ -7,7 +7,7 @@ import re
 import sqlite3
 import tempfile
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,30 +17,33 @@ import zstandard
 
 from ..edges.files import read_chunks, writing
 from ..impact.facts.surface import Entity, HeaderSurface
-from ..impact.targets.providers.libraries import NEAREST
+from ..impact.targets.providers.libraries import NEAREST, HeaderBlock, HeaderState
 from ..impact.targets.providers.providers import default_providers
-from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.store import Stored
-from ..impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
+from ..impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 from ..impact.targets.version import parts
 from .libraries import INNER, INNER_NAME, upstream
-from .surface_file import Including, Packer, pack
+from .surface_file import Packer, spans_of
 
 if TYPE_CHECKING:
+    from ..impact.facts.cpp.lexical import Include
     from .libraries import LibraryFacts, Texts
 
 _SCHEMA = """
-CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
-  names BLOB NOT NULL, headers BLOB NOT NULL, versions TEXT NOT NULL, PRIMARY KEY(name, ros)) WITHOUT ROWID;
+CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, names BLOB NOT NULL, roots TEXT NOT NULL,
+  versions TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE block(library TEXT, start TEXT, data BLOB NOT NULL, PRIMARY KEY(library, start)) WITHOUT ROWID;
 CREATE TABLE debian(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE target(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE header(name TEXT PRIMARY KEY, library TEXT NOT NULL) WITHOUT ROWID;
 """
-"""package: as in surfaces.sqlite, of no ROS generation (0), with what headers declare apart, in names, in the form of
-data; headers: the paths of all versions, a line each, packed; versions: `SUITE=VERSION ...`, oldest first. debian: the
-development packages that were read. target: CMake targets with a namespace, and the library whose configurations
-export them in some version, where that is one. header: headers
-whose library the table of providers does not lead to."""
+"""package: data as in surfaces.sqlite, without headers, and with what these declare apart, in names, in the form of
+data; roots: folders that flags name in any version, space separated; versions: `SUITE=VERSION ...`, oldest first.
+block: headers of all versions, see HeaderBlock, and the first of them. debian: the development packages that were read.
+target: CMake targets with a namespace, and the library whose configurations export them in some version, where that is
+one. header: headers whose library the table of providers does not lead to."""
+_BLOCK = 128
+"""Headers that are read at once. More are smaller when packed, and take longer to read."""
 
 
 class WrittenCounts(NamedTuple):
@@ -67,10 +70,13 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
             db.execute("PRAGMA page_size=512")
             db.executescript(_SCHEMA)
             for name, each in sorted(by_library.items()):
-                row = _packed(name, each, texts)
+                data, names, blocks = _packed(name, each, texts)
                 versions += len(each)
                 headers += sum(len(facts.headers) for _, facts in each)
-                db.execute("INSERT INTO package VALUES(?, 0, ?, ?, ?, ?, ?, ?)", (name, *row))
+                roots = " ".join(dict.fromkeys(root for _, facts in each for root in facts.roots))
+                told = " ".join(f"{suite}={upstream(facts.version)}" for suite, facts in each)
+                db.execute("INSERT INTO package VALUES(?, ?, ?, ?, ?)", (name, data, names, roots, told))
+                db.executemany("INSERT INTO block VALUES(?, ?, ?)", ((name, *block) for block in blocks))
             db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_targets(by_library).items()))
             db.executemany("INSERT INTO header VALUES(?, ?)", sorted(_strays(by_library, debian).items()))
             db.executemany("INSERT INTO debian VALUES(?, ?)", sorted(debian.items()))
@@ -118,27 +124,57 @@ def fold(name: str) -> str:
 
 def _packed(
     name: str, each: Sequence[tuple[str, LibraryFacts]], texts: Texts
-) -> tuple[bytes, bytes, bytes, bytes, bytes, str]:
-    """What is stored of a library: what its versions offer, nothing of what changed, what their headers include,
-    what these declare, the headers of all versions, and the versions by suite."""
-    packer, names, including = Packer(), Packer(), Including()
-    of_suite = {suite: upstream(facts.version) for suite, facts in each}
-    known: set[str] = set()
-    for _, facts in sorted(each, key=lambda one: parts(upstream(one[1].version))):
-        version = upstream(facts.version)
-        if version in known:
-            continue
-        known.add(version)
+) -> tuple[bytes, bytes, list[tuple[str, bytes]]]:
+    """What is stored of a library: what its versions offer, what their headers declare, and the blocks of these."""
+    packer, names = Packer(), Packer()
+    blocks = Blocks(header.path for _, facts in each for header in facts.headers)
+    of_version: dict[str, LibraryFacts] = {}
+    for _, facts in each:
+        of_version.setdefault(upstream(facts.version), facts)
+    for version, facts in sorted(of_version.items(), key=lambda one: parts(one[0])):
         headers = list(_headers(facts, texts))
         packer.add(Stored(version, False, _surface(facts, version)))
         empty = BuildSurface(name, version), PythonSurface(name)
         names.add(Stored(version, False, Surface(name, version, *empty, headers=tuple(headers))))
-        including.add(version, headers)
-    line = Line(tuple(sorted(known, key=parts)), {})
-    told = " ".join("=".join(one) for one in of_suite.items())
-    paths = "\n".join(sorted({header.path for _, facts in each for header in facts.headers}))
-    listed = zstandard.ZstdCompressor(level=19).compress(paths.encode())
-    return packer.packed(), pack(line), including.packed(), names.packed(), listed, told
+        links = (" ".join(header.links) for header in facts.headers)
+        blocks.add((path, header.includes, told) for (path, header), told in zip(headers, links, strict=True))
+    return packer.packed(), names.packed(), list(blocks.packed())
+
+
+class Blocks:
+    """Packs the headers of a library, version by version, oldest first. paths: all that will come, and those that only
+    another release of Debian has of a version; of these no more is kept."""
+
+    def __init__(self, paths: Iterable[str]) -> None:
+        self._versions = 0
+        self._places: dict[str, dict[tuple[tuple[Include, ...], str], list[int]]] = {p: {} for p in sorted(paths)}
+
+    def add(self, headers: Iterable[tuple[str, tuple[Include, ...], str]]) -> None:
+        """The next version: its headers, each with what it includes, and the stems of what is linked."""
+        for path, includes, links in headers:
+            places = self._places[path].setdefault((includes, links), [])
+            if self._versions not in places:
+                places.append(self._versions)
+        self._versions += 1
+
+    def packed(self) -> Iterator[tuple[str, bytes]]:
+        """The first header of each block, and the block."""
+        paths = list(self._places)
+        for at in range(0, len(paths), _BLOCK):
+            numbers: dict[Include, int] = {}
+            headers = {
+                path: tuple(
+                    HeaderState(
+                        tuple(spans_of(places, self._versions)),
+                        tuple(numbers.setdefault(include, len(numbers)) for include in includes),
+                        links,
+                    )
+                    for (includes, links), places in self._places[path].items()
+                )
+                for path in paths[at : at + _BLOCK]
+            }
+            whole = msgspec.msgpack.encode(HeaderBlock(tuple(numbers), headers))
+            yield paths[at], zstandard.ZstdCompressor(level=19).compress(whole)
 
 
 def _headers(facts: LibraryFacts, texts: Texts) -> Iterator[tuple[str, HeaderSurface]]:
@@ -165,7 +201,6 @@ def _surface(facts: LibraryFacts, version: str) -> Surface:
         libraries=facts.links,
         include_dirs=facts.roots,
         variables=facts.variables,
-        headers=tuple(Header(one.path, "", " ".join(one.links)) for one in facts.headers),
         unknown=(("targets", "CMake works their names out"),) if facts.targets_open else (),
         pkgconfig=tuple(" ".join((name, *stems)) for name, stems in facts.pkgconfig),
     )

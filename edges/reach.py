@@ -35,10 +35,11 @@ class Reach:
 
     def names(self, mask: int) -> Iterator[str]:
         """The names whose bits a mask has."""
-        while mask:
-            lowest = mask & -mask
-            yield self._names[lowest.bit_length() - 1]
-            mask ^= lowest
+        for place, byte in enumerate(mask.to_bytes(-(-mask.bit_length() // 8), "little")):
+            while byte:
+                lowest = byte & -byte
+                yield self._names[8 * place + lowest.bit_length() - 1]
+                byte ^= lowest
 
     def masks(self, name: str) -> tuple[int, int]:
         """The names that one leads to over any number of steps, itself included, and those that come along with them.

@@ -9,8 +9,8 @@ from ..facts.store import Store
 from ..model.flow.graph import Graph
 from ..model.flow.workspace import graph_of, linked
 from ..model.workspace import Workspace
-from ..tree import Tree, shown
-from .session import CheckError, open_tree
+from ..tree import Tree
+from .session import CheckError, link_flow, open_tree
 
 
 class Graphs(NamedTuple):
@@ -35,7 +35,7 @@ def graphs(
     tree = open_tree(path, rev, follow_links=follow_links)
     with Store(cache) as store:
         file = _launch_file(path, tree, launch) if launch else ""
-        workspace = _linked(path, tree, store, jobs, progress)
+        workspace = link_flow(path, tree, store, jobs, progress)
         now = graph_of(workspace, store, os.fspath(path), rev, file, arguments)
         strangers = _undeclared(workspace, file, arguments) if file and arguments else ()
         if not base:
@@ -47,18 +47,6 @@ def graphs(
         old = linked(old_tree, store, jobs)
         before = graph_of(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
         return Graphs(now, before, (*strangers, *notes))
-
-
-def _linked(
-    path: Path, tree: Tree, store: Store, jobs: int | None, progress: Callable[[int, int], None] | None
-) -> Workspace:
-    workspace = linked(tree, store, jobs, progress)
-    if not workspace.packages:
-        raise CheckError(
-            f"{shown(os.fspath(path))}: no package was found (no package.xml outside of ignored folders); give the "
-            "folder of a workspace"
-        )
-    return workspace
 
 
 def _undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 from ..facts.store import Store
 from ..model.flow.workspace import linked
-from ..tree import shown
 from .downstream import Impact, impact_of
-from .session import CheckError, open_tree
+from .session import link_flow, open_tree
 
 
 class ImpactResult(NamedTuple):
@@ -36,11 +35,6 @@ def reached(
     tree = open_tree(path, rev, follow_links=follow_links)
     with Store(cache) as store:
         old_tree, notes = base_tree(tree, tuple(base))
-        now = linked(tree, store, jobs, progress)
-        if not now.packages:
-            raise CheckError(
-                f"{shown(os.fspath(path))}: no package was found (no package.xml outside of ignored folders); give the "
-                "folder of a workspace"
-            )
+        now = link_flow(path, tree, store, jobs, progress)
         before = linked(old_tree, store, jobs)
         return ImpactResult(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

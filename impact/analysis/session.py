@@ -284,7 +284,22 @@ def explain_nothing_analysed(path: str | os.PathLike[str], opened: OpenedWorkspa
     if unread:
         named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])
         return f"{where}: no package could be read ({named}); make the files readable"
+    return _no_package(path)
+
+
+def _no_package(path: str | os.PathLike[str]) -> str:
+    where = shown(os.fspath(path))
     return f"{where}: no package was found (no package.xml outside of ignored folders); give the folder of a workspace"
+
+
+def link_flow(path: Path, tree: Tree, store: Store, jobs: int | None, progress: Progress | None) -> Workspace:
+    """A workspace as far as message flow needs it. Raises CheckError when it has no package."""
+    from ..model.flow.workspace import linked
+
+    workspace = linked(tree, store, jobs, progress)
+    if not workspace.packages:
+        raise CheckError(_no_package(path))
+    return workspace
 
 
 def select_rules(options: Options, config: Config) -> dict[str, Rule]:

@@ -1,9 +1,22 @@
 """System libraries: how Debian's packages of them are read, and what the shipped file answers."""
 
 import pytest
-from rosimpact.databuild.libraries import below, library_of_source, pkgconfig_of, read_cmake, refusal
+from rosimpact.databuild.libraries import (
+    HeaderFile,
+    HeaderText,
+    LibraryFacts,
+    below,
+    library_of_source,
+    pkgconfig_of,
+    read_cmake,
+    refusal,
+)
+from rosimpact.databuild.library_file import write
+from rosimpact.impact.facts.cpp.lexical import Include
+from rosimpact.impact.facts.surface import HeaderSurface
 from rosimpact.impact.targets.platform import neighbours
-from rosimpact.impact.targets.providers.libraries import system_libraries
+from rosimpact.impact.targets.providers.libraries import SystemLibraries, system_libraries
+from rosimpact.impact.targets.snapshot import SnapshotError
 
 
 @pytest.mark.parametrize(
@@ -80,6 +93,56 @@ DEBIAN = ("debian bullseye", "debian bookworm", "debian trixie")
 )
 def test_ubuntu_lies_between_two_releases_of_debian(platform, expected):
     assert neighbours(platform, DEBIAN) == expected
+
+
+class Headers:
+    """What headers hold; their hash is what they include."""
+
+    def get(self, sha):
+        includes = tuple(Include(path, False, 0, 0) for path in sha.split())
+        return HeaderText(HeaderSurface((), includes=includes), ())
+
+
+def release(version, headers, roots=()):
+    """A library `arm` of one release. headers: by path, what they include."""
+    listed = tuple(HeaderFile(path, includes, ("arm", "arm_core")) for path, includes in headers.items())
+    return {"arm": LibraryFacts("arm", version, ("libarm-dev",), listed, roots, ("arm",), ("arm",), (), False, (), ())}
+
+
+MANY = {f"arm/part{number:03}.h": "" for number in range(300)}
+RELEASES = {
+    "bullseye": release("1.0-1", {**MANY, "arm/arm.h": "part000.h arm/part001.h", "arm/old.h": ""}),
+    "bookworm": release("1.2-1", {**MANY, "arm/arm.h": "part000.h core.h", "arm/core.h": ""}, ("arm-1.2",)),
+    "trixie": release("2.0-1", {**MANY, "arm/arm.h": "arm/core.h"}),
+    "sid": release("2.0-3", {**MANY, "arm/arm.h": "", "arm/new.h": ""}),
+}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    file = tmp_path_factory.mktemp("libraries") / "libraries.sqlite"
+    write(file, RELEASES, Headers())
+    return SystemLibraries(file)
+
+
+def test_a_written_file_tells_of_each_header_which_versions_have_it_and_what_is_linked(written, monkeypatch):
+    monkeypatch.setattr(SystemLibraries, "of_header", lambda self, header: "arm" if self.has("arm", header) else "")
+    assert written.versions("arm") == {
+        "debian bullseye": "1.0", "debian bookworm": "1.2", "debian trixie": "2.0", "debian sid": "2.0"
+    }  # fmt: skip
+    assert written.build("arm", "1.2").include_dirs == ("arm-1.2",)
+    names = ("arm/arm.h", "arm/part299.h", "arm-1.2/arm/core.h", "arm/new.h", "arm/part300.h", "arm.h", "zzz")
+    assert [name for name in names if written.has("arm", name)] == list(names[:4])
+    old, between = "debian bullseye", "ubuntu jammy"
+    assert written.included("arm/arm.h", old).paths == ("arm/part000.h", "arm/part001.h")
+    assert written.included("arm/arm.h", between).paths == ("arm/part000.h", "arm/part001.h", "arm/core.h")
+    assert written.included("arm/old.h", between).paths == () and written.included("arm/old.h", "debian trixie") is None
+    assert written.linking("arm/part128.h", old).libraries == ("arm", "arm_core")
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path):
+    with pytest.raises(SnapshotError, match=r"none\.sqlite: .*install rosimpact again"):
+        SystemLibraries(tmp_path / "none.sqlite")
 
 
 # -- what is shipped ---------------------------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 """System libraries as Debian packages them, by release: which library a header or CMake target is of, whether it is
-compiled, and how it is linked. Looked up in `data/libraries.sqlite` (databuild/debian.py), a library at a time.
+compiled, and how it is linked. Looked up in `data/libraries.sqlite` (databuild/debian.py), some headers at a time.
 
 Of Ubuntu no packages were read. An LTS release takes what Debian has at the time, so a library there is neither older
 than in the Debian release before it nor newer than in the one after it: what both of these say holds.
@@ -7,17 +7,23 @@ than in the Debian release before it nor newer than in the one after it: what bo
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from itertools import islice, pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import msgspec
 import zstandard
 
 from ....edges.memory import cached_method
+from ...facts.cpp.lexical import Include
 from ..platform import neighbours
 from ..snapshot import DATA, SnapshotError
-from ..surface.store import StoredSurfacesError, Surfaces
+from ..surface.includes import path_of, there
+from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
+from ..version import parts
 from .providers import default_providers
 
 if TYPE_CHECKING:
@@ -56,12 +62,33 @@ class Presence(NamedTuple):
     lost: bool
 
 
-class SystemLibraries:
-    """The shipped file. Raises SnapshotError when it cannot be read."""
+class HeaderState(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A header in some versions. spans: as in IncludesRow. includes: places in HeaderBlock.every. links: stems of the
+    libraries in its package, space separated."""
 
-    def __init__(self) -> None:
+    spans: tuple[int, ...]
+    includes: tuple[int, ...]
+    links: str
+
+
+class HeaderBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Headers of a library that follow one another in the order of their paths, by those; in all its versions. A header
+    without states is in one that was not read for itself."""
+
+    every: tuple[Include, ...]
+    headers: dict[str, tuple[HeaderState, ...]]
+
+
+_decode_block = msgspec.msgpack.Decoder(HeaderBlock).decode
+
+
+class SystemLibraries:
+    """The shipped file, or another of its form. Raises SnapshotError when it cannot be read."""
+
+    def __init__(self, file: Path = DATA / "libraries.sqlite") -> None:
+        self._file = StoredRows(file)
         try:
-            self._file = Surfaces(DATA / "libraries.sqlite")
+            self._file.columns("SELECT name FROM package LIMIT 1")
         except StoredSurfacesError as error:
             raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
 
@@ -93,9 +120,14 @@ class SystemLibraries:
 
     @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
     def build(self, library: str, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
-        """What a version gives to CMake and the linker. of: these fields alone."""
-        history = self._file.history(library, 0)
+        """What a version gives to CMake and the linker, without its headers. of: these fields alone."""
+        history = self._history(library)
         return history.build(version, of) if history is not None else None
+
+    @lru_cache(maxsize=256)  # noqa: B019
+    def _history(self, library: str) -> SurfaceHistory | None:
+        data = self._file.columns("SELECT data FROM package WHERE name = ?", library)
+        return SurfaceHistory(library, data[0], b"") if data else None
 
     @cached_method
     def of_header(self, header: str) -> str:
@@ -108,39 +140,66 @@ class SystemLibraries:
 
     def has(self, library: str, header: str) -> bool:
         """Whether some version of a library has a header."""
-        known = self._headers(library)
-        return any(f"\n{path}\n".encode() in known for path in _written(header, self._roots(library)))
+        return any(self._states(library, path) is not None for path in _written(header, self._roots(library)))
+
+    def _states(self, library: str, path: str) -> tuple[tuple[Include, ...], tuple[HeaderState, ...]] | None:
+        """What is stored of a header, by its path below the folders that flags name: of its block HeaderBlock.every,
+        and its states; None for one that no version has."""
+        starts = self._starts(library)
+        place = bisect_right(starts, path)
+        block = self._block(library, starts[place - 1]) if place else None
+        return (block.every, block.headers[path]) if block is not None and path in block.headers else None
+
+    @cached_method
+    def _starts(self, library: str) -> tuple[str, ...]:
+        """The first header of each block of a library."""
+        return tuple(self._file.columns("SELECT start FROM block WHERE library = ? ORDER BY start", library))
 
     @lru_cache(maxsize=64)  # noqa: B019
-    def _headers(self, library: str) -> bytes:
-        """All headers of a library, each in a line; as texts of their own those of Boost alone took megabytes."""
-        (data,) = self._file.columns("SELECT headers FROM package WHERE name = ?", library)
-        return b"\n" + zstandard.ZstdDecompressor().decompress(data) + b"\n"
+    def _block(self, library: str, start: str) -> HeaderBlock:
+        (data,) = self._file.columns("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
+        return _decode_block(zstandard.ZstdDecompressor().decompress(data))
+
+    def _state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
+        """The same with the one state that it has in a version; None where the version has no such header."""
+        found = self._states(library, path)
+        if found is None:
+            return None
+        place = self._places(library)[version]
+        for state in found[1]:
+            if there(state.spans, place):
+                return found[0], state
+        return None
+
+    @cached_method
+    def _places(self, library: str) -> dict[str, int]:
+        """The versions of a library, oldest first, with their places in the spans of its headers."""
+        versions = sorted(dict.fromkeys(self.versions(library).values()), key=parts)
+        return {version: place for place, version in enumerate(versions)}
 
     def included(self, header: str, platform: str) -> Including | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
         neither has it, one of them was not read, or it is of no library that was."""
         library = self.of_header(header)
         before, after = self.around(library, platform) if library else ("", "")
-        known = self._file.included(library, 0) if before and after else None
-        if known is None:
+        if not (before and after):
             return None
         found: dict[str, None] = {}
-        there = False
+        known = False
         for version in (before, after):
             for path in _written(header, self._roots(library)):
-                if (written := known.written(path, version)) is not None:
-                    found.update((known.answer(one, path, version), None) for one in written)
-                    there = True
+                if (stored := self._state(library, version, path)) is not None:
+                    every, state = stored
+                    has = partial(self._state, library, version)
+                    found.update((path_of(every[number], path, has), None) for number in state.includes)
+                    known = True
                     break
-        return Including(library, before, tuple(found)) if there else None
+        return Including(library, before, tuple(found)) if known else None
 
     @cached_method
     def _roots(self, library: str) -> tuple[str, ...]:
         """The folders that flags name in any version."""
-        versions = dict.fromkeys(self.versions(library).values())
-        builds = (self.build(library, version, ("include_dirs",)) for version in versions)
-        return tuple(dict.fromkeys(root for build in builds if build is not None for root in build.include_dirs))
+        return tuple(self._first("SELECT roots FROM package WHERE name = ?", library).split())
 
     @cached_method
     def linking(self, header: str, platform: str) -> Linking | None:
@@ -151,11 +210,11 @@ class SystemLibraries:
         build = self.build(library, version) if version else None
         if build is None:
             return None
-        paths = set(_written(header, build.include_dirs))
-        row = next((one for one in build.headers if one.include in paths), None)
-        if row is None:
+        states = (self._state(library, version, path) for path in _written(header, build.include_dirs))
+        stored = next(filter(None, states), None)
+        if stored is None:
             return None
-        libraries = tuple(row.source.split())
+        libraries = tuple(stored[1].links.split())
         mine = set(libraries)
         configs = (one.split(" ") for one in build.pkgconfig)
         names = (
@@ -202,11 +261,11 @@ def _exports(build: BuildSurface, name: str) -> bool | None:
 def _written(header: str, roots: tuple[str, ...]) -> Iterator[str]:
     """A header as it is written, and as it lies below the folders that flags name."""
     yield header
-    parts = header.split("/")
-    for place in range(1, len(parts)):
-        folder = "/".join(parts[:place])
+    folders = header.split("/")
+    for place in range(1, len(folders)):
+        folder = "/".join(folders[:place])
         if any(f"/{root}".endswith(f"/{folder}") for root in roots):
-            yield "/".join(parts[place:])
+            yield "/".join(folders[place:])
 
 
 @cache

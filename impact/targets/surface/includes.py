@@ -2,7 +2,7 @@
 many packages reads little."""
 
 import posixpath
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import msgspec
 import zstandard
@@ -73,20 +73,25 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return next((row for row in rows if there(row.spans, place)), None)
 
     def answer(self, include: Include, header: str, version: str) -> str:
-        """The path that dependants would write for what a header includes: that of a header of this package, where one
-        lies there, else as it is written."""
-        if include.angled and self._row(include.path, version) is not None:
-            return include.path
-        folder, slash, _ = header.rpartition("/")
-        beside = f"{folder}{slash}{include.path}"
-        if "./" in beside or "//" in beside:
-            beside = posixpath.normpath(posixpath.join(folder, include.path))
-        return beside if self._row(beside, version) is not None else include.path
+        """The path that dependants would write for what a header includes, see path_of()."""
+        return path_of(include, header, lambda path: self._row(path, version) is not None)
+
+
+def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
+    """The path that dependants would write for what a header includes: that of a header of the same package, where one
+    lies there, else as it is written. has: gives something, or True, of a header that the package has."""
+    if include.angled and has(include.path):
+        return include.path
+    folder, slash, _ = header.rpartition("/")
+    beside = f"{folder}{slash}{include.path}"
+    if "./" in beside or "//" in beside:
+        beside = posixpath.normpath(posixpath.join(folder, include.path))
+    return beside if has(beside) else include.path
 
 
 def there(spans: Sequence[int], place: int) -> bool:
     """Whether a place lies in some spans; none at all are all places."""
-    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
+    return not spans or any([spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2)])
 
 
 def unpack(data: bytes) -> Included:

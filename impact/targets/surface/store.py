@@ -324,12 +324,33 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
         yield from range(count)
 
 
-class Surfaces:
-    """A file of surfaces. Raises StoredSurfacesError when it cannot be opened."""
+class StoredRows:
+    """An SQLite file that is only read, by any process. Its methods raise StoredSurfacesError when it cannot be."""
 
     def __init__(self, file: Path):
         self.file = file
         self._reader = 0  # the process that opened it
+
+    def columns(self, query: str, *values: str) -> list[Any]:
+        """The first column of a query's rows."""
+        return [row[0] for row in self._rows(query, *values)]
+
+    def _rows(self, query: str, *values: str | int) -> Iterator[tuple]:
+        try:
+            if self._reader != os.getpid():
+                # No other process may go on with a connection of this one.
+                self._db = sqlite3.connect(f"{self.file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+                self._reader = os.getpid()
+            yield from self._db.execute(query, values)
+        except sqlite3.Error as error:
+            raise StoredSurfacesError(f"{self.file}: {error}; make it anew with `rosimpact surface build`") from None
+
+
+class Surfaces(StoredRows):
+    """A file of surfaces. Raises StoredSurfacesError when it cannot be opened."""
+
+    def __init__(self, file: Path):
+        super().__init__(file)
         self._generations: dict[str, tuple[int, ...]] = {}
         for name, ros in self._rows("SELECT name, ros FROM package ORDER BY name, ros"):
             self._generations[name] = (*self._generations.get(name, ()), ros)
@@ -390,10 +411,6 @@ class Surfaces:
         plain = zstandard.ZstdDecompressor().decompress(data)
         return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
 
-    def columns(self, query: str, value: str) -> list[Any]:
-        """The first column of a query's rows."""
-        return [row[0] for row in self._rows(query, value)]
-
     @cached_property
     def about(self) -> About:
         """What the file holds."""
@@ -408,16 +425,6 @@ class Surfaces:
     def stamp(self) -> str:
         """Differs whenever the file does."""
         return hashlib.sha1(self.file.read_bytes()).hexdigest()[:16]
-
-    def _rows(self, query: str, *values: str | int) -> Iterator[tuple]:
-        try:
-            if self._reader != os.getpid():
-                # No other process may go on with a connection of this one.
-                self._db = sqlite3.connect(f"{self.file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
-                self._reader = os.getpid()
-            yield from self._db.execute(query, values)
-        except sqlite3.Error as error:
-            raise StoredSurfacesError(f"{self.file}: {error}; make it anew with `rosimpact surface build`") from None
 
 
 @cache
