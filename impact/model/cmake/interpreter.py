@@ -154,6 +154,7 @@ class Interpreter:
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
+        self.catkin_destinations = False  # its folders are set without catkin_package()
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
