@@ -38,6 +38,7 @@ _TYPES = {
     "DOC": "share/doc",
     "LIBEXEC": "libexec",
 }
+_CONFIGURATION = re.compile(r"(?:-config|Config)\.cmake\Z")
 _OF_CATKIN_PACKAGE = re.compile(r"\$\{(CATKIN_PACKAGE_[A-Z]+_DESTINATION)\}")
 
 
@@ -135,7 +136,10 @@ def _files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> 
         by_conditions.setdefault(item.conditions, []).append(item)
     for conditions, members in by_conditions.items():
         more = {"conditions": merge(run.conditions, conditions), "rename": run.shown(following(args, "RENAME") or "")}
-        paths = map(run.tree_path, members)
+        paths = tuple(map(run.tree_path, members))
+        for path in paths:
+            if _CONFIGURATION.search(path):
+                run.hand_on(path, call.at, whole=True)
         run.add_install(kind, paths, destination, members[0] if len(members) == 1 else call, **more)
 
 

@@ -114,8 +114,10 @@ def _list_below(package, folder: str) -> list[str]:
 
 
 def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
-    """Whether a file or folder is found where the package is installed, by its path below the share folder."""
-    return places is not None and any(f"{top}/{package}/{inside}" in places for top in ("share", "lib"))
+    """Whether a file or folder is found where the package is installed, by its path below the share folder. roslaunch
+    looks for a program by its name alone in lib/<package>. Source: _find_executable() of its substitution_args.py."""
+    name = posixpath.basename(inside)
+    return places is not None and not places.isdisjoint((f"share/{package}/{inside}", f"lib/{package}/{name}"))
 
 
 # Launch files of ROS 2, which `ros2 launch` finds in the share folder alone.
