@@ -17,7 +17,7 @@ Use instead
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg" "msg/Winch.msg")
 
 Not reported
-    Lists of files that cannot be resolved; files in other folders.
+    Lists of files that cannot be resolved; files in other folders; names that differ from a listed one in case alone.
 """
 
 import posixpath
@@ -32,6 +32,7 @@ _FOLDERS = frozenset({"msg", "srv", "action"})
 
 @rule(
     severity="warning",
+    preview=True,
     group="missing-message-generation",
     texts=Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
 )
@@ -40,9 +41,9 @@ def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagno
     given = {path for one in made for path in one.files} | {path for path, _ in package.build.message_files}
     if not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return
-    names = {posixpath.basename(path) for path in given}
+    names = {posixpath.basename(path).lower() for path in given}
     for interface in package.digest.interfaces:
         inside = interface.path[len(package.path) :].lstrip("/")
         folder, _, name = inside.partition("/")
-        if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name not in names:
+        if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name.lower() not in names:
             yield Diagnostic(made[-1].at, inside, package.name, doubts=(Doubt.DISTURBS,))

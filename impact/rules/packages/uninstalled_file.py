@@ -53,7 +53,7 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
             "`{file}` cannot be launched: the folder `{subject}` is not installed",
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
-        "script": Text("`{subject}` is started by a launch file but is not installed", "{how}"),
+        "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
@@ -128,6 +128,8 @@ def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
     """The folder of launch files where no rule installs any file of it, with a launch file in it that starts or opens
     something: in ROS 1, which finds them in the source space too, an installed program of the package."""
     files = _list_below(package, posixpath.join(package.path, "launch"))
+    if package.build.catkin_package is None and package.build.ament_package is None:
+        return  # what comes after a command that cannot be followed is not known
     if any(is_installed(package, installs, path) for path in files):
         return
     programs = {item for install in installs if install.kind == "targets" for item in install.items}
