@@ -2,15 +2,15 @@
 
 What it does
     Reports files, programs and folders in install() that neither the tree has nor the build makes, rules without
-    DESTINATION, and variables of catkin for places that are misspelt, were removed in Groovy, or are used before
-    catkin_package() sets them.
+    DESTINATION, generator expressions as folders, and variables of catkin for places that are misspelt, were removed in
+    Groovy, or are used before catkin_package() sets them.
 
 Why it breaks
     `make install` stops: "file INSTALL cannot find". CMake stops at a rule without destination, also where its variable
     is empty; an empty variable before a path puts the files into a wrong place.
 
 Severity
-    error.
+    error; warning for generator expressions, at which only installing symbolic links stops.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -28,7 +28,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..rule import Diagnostic, Doubt, Text, rule
 from .absent_paths import is_absent
 from .install_rules import list_installing
 
@@ -39,6 +39,9 @@ from .install_rules import list_installing
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
         "no destination": Text("install({kind}) has no {subject}, at which CMake stops", "add it"),
+        "symlinks": Text(
+            "`colcon build --symlink-install` takes `{subject}` for the name of a folder", "write the folder itself"
+        ),
         "early": Text("`{subject}` is used before catkin_package() sets it", "call catkin_package() before install()"),
         "unset": Text(
             "nothing sets `{subject}`, so files are looked for, or installed, in a wrong place",
@@ -64,6 +67,9 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
             yield Diagnostic(install.at, "DESTINATION", package.name, {"kind": install.kind.upper()}, "no destination")
         for item in install.items:
             path = posixpath.normpath(item)
+            if _stops_symlinks(package, install, item):
+                subject = item.replace(f"{package.path}/", "") if package.path else item
+                yield Diagnostic(install.at, subject, package.name, kind="symlinks", doubts=(Doubt.CONDITIONAL,))
             if item.startswith(("/", "build", "devel")) or re.search(r"[$*?<>]", item):
                 continue
             if package.path and not path.startswith(package.path + "/"):
@@ -74,6 +80,14 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue
             if is_absent(view, package, path):
                 yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
+
+
+def _stops_symlinks(package, install, item: str) -> bool:
+    """Whether ament's own install(DIRECTORY), which links files instead of copying them, takes an item for the name of
+    a folder that does not exist. Source: ament_cmake_symlink_install_directory.cmake of ament_cmake_core."""
+    if package.build.ament_package is None or install.kind != "directory" or "$<" not in item:
+        return False
+    return not (install.executable or install.only or any("~" in pattern for pattern in install.patterns))
 
 
 def _is_written(path: str) -> bool:
