@@ -45,8 +45,9 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """includes in order; qualified: distinct qualified names; words: distinct bare identifiers (not keywords) with at
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
-    exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
-    and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
+    exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
+    packages and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main
+    function.
     types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
     is not followed. variables: qualified types of which some line declares a variable or member itself, not a pointer
     or reference.
@@ -121,7 +122,8 @@ _MAIN = re.compile(r"main\s*\(")
 _BEFORE_MAIN = re.compile(r"\b(?:int|auto|void)\s+(?:\w+\s+)?$")
 _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
-    r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES)\s*\((?P<arguments>[^;{}]{0,500}?)\)"
+    r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES"
+    r"|GZ_REGISTER_\w+_PLUGIN|(?:GZ|IGNITION)_ADD_PLUGIN)\s*\((?P<arguments>[^;{}]{0,500}?)\)"
 )
 EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
 _PACKAGE_URL = re.compile(r'"package://([A-Za-z]\w*)(?:/([^"\n]*))?"')
@@ -545,9 +547,10 @@ def includes_of(scanned: Scan) -> tuple[Include, ...]:
 
 
 def exports_of(visible: str) -> tuple[str, ...]:
-    """Classes registered as plugins or components: the first argument, or the later one of ROS 1's old macros."""
+    """Classes registered as plugins, those of Gazebo too, or components: the first argument, or the later one of ROS
+    1's old macros."""
     exports: dict[str, None] = {}
-    if not any(word in visible for word in EXPORTING):
+    if "_PLUGIN" not in visible and not any(word in visible for word in EXPORTING):
         return ()
     for match in _EXPORT.finditer(visible):
         line_start = visible.rfind("\n", 0, match.start()) + 1

@@ -9,7 +9,7 @@ from .blocks import CommandCall
 from .build import FoundPackage, GeneratedInterfaces
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
-from .targets import add_links, add_sources, known
+from .targets import add_links, add_sources, known, makes_archives
 from .values import Word, sections, split_words, word
 
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
@@ -293,6 +293,7 @@ def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word])
     draft = run.new_target(name, kind, name.at)
     if "STATIC" in given:
         draft.installed_as = "static"
+    draft.archive = "STATIC" in given or (given.keys().isdisjoint(("SHARED", "MODULE")) and makes_archives(run))
     for section in ("", "STATIC", "SHARED", "MODULE", "INTERFACE", "EXCLUDE_FROM_ALL", "NO_TARGET_LINK_LIBRARIES",
                     "SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST"):  # fmt: skip
         add_sources(run, draft, given.get(section, []))

@@ -77,8 +77,8 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
     stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
     empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
-    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive. excluded: built on
-    request only (EXCLUDE_FROM_ALL).
+    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive by its type. excluded:
+    built on request only (EXCLUDE_FROM_ALL). archive: an archive, by its type or without one.
     """
 
     name: str
@@ -97,6 +97,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     installed_includes: tuple[str, ...] = ()
     static: bool = False
     excluded: bool = False
+    archive: bool = False
 
 
 class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -104,7 +105,8 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     ament_python_install_package), export. items: paths relative to the workspace root, or target names.
     patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`, and regular expressions then with `~`.
     only: with FILES_MATCHING, so that nothing but what the patterns name is installed. rename: of files. export: the
-    export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets."""
+    export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets.
+    executable: a folder whose files keep, or are given, the permission to be executed."""
 
     kind: str
     items: tuple[str, ...]
@@ -117,6 +119,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     export: str = ""
     namespace: str = ""
     includes: tuple[str, ...] = ()
+    executable: bool = False
 
 
 class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -10,6 +10,7 @@ class TargetDraft:
     __slots__ = (
         "added",
         "alias_of",
+        "archive",
         "at",
         "conditions",
         "definitions",
@@ -41,7 +42,7 @@ class TargetDraft:
         self.export_name = ""
         self.public_standard = 0
         self.installed_includes: dict[str, None] = {}
-        self.excluded = self.added = False
+        self.excluded = self.added = self.archive = False
         self.installed_as = kind  # the artifact: executable, library, static or module
 
     def finish(self) -> BuildTarget:
@@ -67,6 +68,7 @@ class TargetDraft:
             tuple(self.installed_includes),
             self.installed_as == "static",
             self.excluded,
+            self.archive,
         )
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:

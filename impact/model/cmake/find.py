@@ -216,6 +216,7 @@ _FINDING = {"catkin": _catkin}
 @handles("catkin_destinations")
 def catkin_destinations(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_destinations() sets what find_package(catkin) and project() set together."""
+    run.catkin_destinations = True
     _catkin(run, call)
 
 

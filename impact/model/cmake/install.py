@@ -1,5 +1,7 @@
 """What is installed."""
 
+import re
+
 from ...facts.condition import Condition
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
@@ -36,6 +38,8 @@ _TYPES = {
     "DOC": "share/doc",
     "LIBEXEC": "libexec",
 }
+_CONFIGURATION = re.compile(r"(?:-config|Config)\.cmake\Z")
+_OF_CATKIN_PACKAGE = re.compile(r"\$\{(CATKIN_PACKAGE_[A-Z]+_DESTINATION)\}")
 
 
 @handles("install", least=1)
@@ -44,6 +48,9 @@ def install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     if run.silent:
         return
     form = args[0]
+    if run.catkin_package is None and not run.catkin_destinations:
+        for name in _OF_CATKIN_PACKAGE.findall(" ".join(argument.text for argument in call.arguments)):
+            run.use_variable(name, call.at)
     if form in ("TARGETS", "IMPORTED_RUNTIME_ARTIFACTS"):
         _targets(run, call, args[1:])
     elif form in ("FILES", "PROGRAMS"):
@@ -122,20 +129,24 @@ def _files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> 
         items.append(item)
     if kind == "files" and "PERMISSIONS" in args and any(item.endswith("_EXECUTE") for item in args):
         kind = "programs"
-    destination = _destination(run, args)
+    destination = _destination(run, call, args)
     items = split_words(items)
     by_conditions: dict[tuple[Condition, ...], list[Word]] = {}
     for item in items:
         by_conditions.setdefault(item.conditions, []).append(item)
     for conditions, members in by_conditions.items():
         more = {"conditions": merge(run.conditions, conditions), "rename": run.shown(following(args, "RENAME") or "")}
-        paths = map(run.tree_path, members)
+        paths = tuple(map(run.tree_path, members))
+        for path in paths:
+            if _CONFIGURATION.search(path):
+                run.hand_on(path, call.at, whole=True)
         run.add_install(kind, paths, destination, members[0] if len(members) == 1 else call, **more)
 
 
-def _destination(run: Interpreter, args: list[Word]) -> str:
-    destination = run.shown(following(args, "DESTINATION") or "")
-    return destination or _TYPES.get(following(args, "TYPE") or "", "")
+def _destination(run: Interpreter, call: CommandCall, args: list[Word]) -> str:
+    """Where files go: empty where the call surely does not say so, at which CMake stops."""
+    destination = run.shown(following(args, "DESTINATION") or "") or _TYPES.get(following(args, "TYPE") or "", "")
+    return destination or ("${DESTINATION}" if any("$" in argument.text for argument in call.arguments) else "")
 
 
 def _directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
@@ -155,5 +166,6 @@ def _directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             patterns.append(f"~{item}" if mode == "REGEX" else str(item))
             mode = ""
     paths = tuple(run.tree_path(item) for item in split_words(items))
-    more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args}
-    run.add_install("directory", paths, _destination(run, args), call, **more)
+    executable = "USE_SOURCE_PERMISSIONS" in args or any(item.endswith("_EXECUTE") for item in args)
+    more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args, "executable": executable}
+    run.add_install("directory", paths, _destination(run, call, args), call, **more)

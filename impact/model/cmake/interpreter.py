@@ -157,6 +157,7 @@ class Interpreter:
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
+        self.catkin_destinations = False  # its folders are set without catkin_package()
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
@@ -367,9 +368,11 @@ class Interpreter:
 
     def use_command(self, call: CommandCall) -> None:
         """Notes a command that neither CMake nor the tree defines."""
-        if self.silent or call.name in self.definitions:
-            return
         module = MODULE_OF.get(call.name, "")
+        # What the configuration of a package finds first may bring the macro for it.
+        first = self.handing_on and call.name == "find_dependency" and not self.handed_on
+        if (self.silent and not first) or call.name in self.definitions:
+            return
         if module and module in self.modules:
             return
         self.uses[UnknownCommand("command", call.name, self.place(call.at), module, self.conditions)] = None
@@ -774,14 +777,16 @@ class Interpreter:
             finally:
                 self.silent -= 1
 
-    def hand_on(self, path: str, at: At) -> None:
+    def hand_on(self, path: str, at: At, whole: bool = False) -> None:
         """Runs a script that the package gives to those who find it, for what it looks for. Its files lie in one folder
-        once they are installed, so that what it includes is known by its name."""
+        once they are installed, so that what it includes is known by its name. whole: it is the configuration itself,
+        rather than a part of one that ament or catkin writes."""
         path = self.own_file(path) or path
         if path in self.including or self.load(path) is None:
             return
         outer, targets, macros, made = self.handing_on, self.targets, self.macros, self.made
         self.targets, self.macros, self.made = Targets(), {}, {}
+        modules, self.modules = self.modules, set() if whole else self.modules | {"CMakeFindDependencyMacro"}
         self.handing_on = True
         self.silent += 1
         self.push(dict(self.scope))
@@ -794,6 +799,7 @@ class Interpreter:
             self.pop()
             self.silent -= 1
             self.handing_on, self.targets, self.macros, self.made = outer, targets, macros, made
+            self.modules = modules
 
     def own_file(self, name: str) -> str | None:
         """The CMake file of the package, or the template of one, that has a name once it is installed."""

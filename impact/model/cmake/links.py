@@ -61,8 +61,11 @@ def linked_items(package: Package, target: str) -> set[str] | None:
 
 
 def exported_targets(package: Package) -> Iterator[BuildTarget]:
-    """The libraries of the package that dependants link as imported targets, through ament_export_targets()."""
+    """The libraries of the package that dependants link as imported targets, through ament_export_targets() or a
+    configuration of its own."""
     sets = {e.item for e in package.build.exports if e.how == "ament_export_targets"}
+    if package.build.handed_on:
+        sets.update(item for i in package.build.installs if i.kind == "export" for item in i.items)
     names = {name for i in package.build.installs if i.kind == "targets" and i.export in sets for name in i.items}
     for target in package.build.targets:
         if target.name in names and target.kind in ("library", "interface"):

@@ -2,6 +2,7 @@
 
 import re
 
+from ...conditions.cmake import constant
 from .blocks import CommandCall
 from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
@@ -21,6 +22,20 @@ _LIBRARY_KINDS = {
     "INTERFACE": "interface",
 }
 _LIBRARY_FLAGS = frozenset({"EXCLUDE_FROM_ALL", "IMPORTED", "GLOBAL", "WITH_SOABI", "THIN_LTO", "NO_EXTRAS", "SYSTEM"})
+
+
+def makes_archives(run: Interpreter) -> bool:
+    """Whether add_library() makes an archive where no type is given: unless BUILD_SHARED_LIBS is set, by the package or
+    by what it finds, of which catkin and ament_cmake_ros are known to. Source: cmake-commands(7), add_library()."""
+    found = {package.name for package in run.found}
+    value = run.get("BUILD_SHARED_LIBS")
+    if value is not None and constant(value.text) is not False:
+        return False
+    return not found.isdisjoint(_AMENT) and found.isdisjoint(_SHARING)
+
+
+_AMENT = frozenset({"ament_cmake", "ament_cmake_auto"})
+_SHARING = frozenset({"catkin", "ament_cmake_ros", "ament_cmake_ros_core"})
 
 
 @handles("add_library", "cuda_add_library", "rosbuild_add_library", "python_add_library", "python3_add_library",
@@ -45,6 +60,7 @@ def add_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     draft = run.add_target(name, kind)
     if form in ("STATIC", "OBJECT"):
         draft.installed_as = "static"
+    draft.archive = draft.installed_as == "static" or (kind == "library" and not form and makes_archives(run))
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, sources)
 

@@ -26,17 +26,20 @@ class AmentExports(NamedTuple):
 
 
 def read_ament_exports(view: TargetView, package: Package) -> AmentExports | None:
-    """The exports of an ament package; None where it exports nothing, or where what it exports cannot be seen."""
+    """The exports of an ament package, or of one of plain CMake that installs a configuration of its own; None where it
+    exports nothing, or where what it exports cannot be seen."""
+    handed = {f.name for f in package.build.handed_on}
     if package.build.ament_package is None:
-        return None
+        written = package.build.catkin_package is None and any(i.kind == "export" for i in package.build.installs)
+        near = {provider.name for name in handed for provider in view.cmake(name)[:1]}
+        return AmentExports([], frozenset(), frozenset(handed) | view.spread(near)) if handed and written else None
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):
         return None
     if any(f.how == "ament_auto" for f in package.build.found):
         return None
-    named = dependencies | {f.name for f in package.build.handed_on}
-    return AmentExports(exports, dependencies, view.roles.found_with(named))
+    return AmentExports(exports, dependencies, view.roles.found_with(dependencies | handed))
 
 
 def exports_something(exports: list[CMakeExport]) -> bool:

@@ -4,6 +4,10 @@ from ...model.view import TargetView
 from ...targets.surface.offers import Offers
 from ..rule import Doubt
 
+# System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
+# hand: the stored index has headers by the path that dependants write, below whichever folder.
+OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
+
 
 def shares_one_folder(view: TargetView) -> bool:
     """Whether the headers of all released packages lie in one folder, and go on to with all updates that are known."""

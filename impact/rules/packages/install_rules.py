@@ -1,10 +1,10 @@
 """The install rules of packages, as the rules on them ask for it."""
 
 import posixpath
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import Install
-from ...model.cmake.installed import lets_in
+from ...model.cmake.installed import copied_files, lets_in
 from ...model.view import TargetView
 from ...model.workspace import Package
 
@@ -37,6 +37,21 @@ def is_installed(package: Package, installs: list[Install], path: str) -> bool:
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True
     return False
+
+
+def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str] | None:
+    """The paths in the prefix of all files that install rules copy from the tree, and of their folders; None where
+    a rule may put files to places that are not known."""
+    rules = [install for install in installs if install.kind in ("files", "programs", "directory")]
+    if any("$" in text or "*" in text for rule in rules for text in (rule.destination, *rule.items)):
+        return None
+    found: set[str] = set()
+    for rule in rules:
+        for _, place in copied_files(rule, posixpath.normpath(rule.destination), package.digest.files):
+            while place and place not in found:
+                found.add(place)
+                place = posixpath.dirname(place)
+    return frozenset(found)
 
 
 def list_references(view: TargetView) -> dict[str, dict[str, set[str]]]:

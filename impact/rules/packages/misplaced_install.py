@@ -2,8 +2,8 @@
 
 What it does
     Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
-    name than code includes them by, scripts that install(FILES) copies without execute permission, registered
-    components outside of `lib`, and install folders of a Python version other than the target's.
+    name than code includes them by, scripts that install(FILES) or install(DIRECTORY) copies without execute
+    permission, registered components outside of `lib`, and install folders of a Python version other than the target's.
 
 Why it breaks
     The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
@@ -27,6 +27,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.cmake.installed import copied_files
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
 from .install_rules import is_installed, list_installing
@@ -42,6 +43,10 @@ from .install_rules import is_installed, list_installing
         ),
         "not executable": Text(
             "`{subject}` is installed with install(FILES), so it cannot be executed", "install(PROGRAMS ...)"
+        ),
+        "folder": Text(
+            "`{file}` is installed with install(DIRECTORY), which does not keep it executable",
+            "add USE_SOURCE_PERMISSIONS, or use install(PROGRAMS ...)",
         ),
         "renamed": Text(
             "headers that are included as `{name}/...` are installed into `{destination}`",
@@ -104,21 +109,31 @@ def _is_lost(view: TargetView, package, install, folder: str) -> bool:
 def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
+    scripts = {*package.digest.scripts, *package.digest.shells}
     for install in installs:
-        if install.kind != "files":
-            continue
         among_programs = re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination)
-        for item in install.items:
-            path = posixpath.normpath(item)
+        if install.kind == "directory" and not install.executable and among_programs:
+            copied = [path for path, _ in copied_files(install, "", package.digest.files) if path in scripts]
+        elif install.kind == "files":
+            copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.digest.scripts]
+        else:
+            continue
+        for path in copied:
             inside = path[len(package.path) :].lstrip("/")
             started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
-            if path in package.digest.scripts and started and path not in programs and not inside.endswith(_RUN_BY):
-                if posixpath.basename(path) in package.digest.interpreted:
-                    continue
-                name = posixpath.basename(path)
-                sure = among_programs or _is_node(view, package, path)
-                doubts = (bool(sure) or Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
-                yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
+            if not started or path in programs or inside.endswith(_RUN_BY):
+                continue
+            name = posixpath.basename(path)
+            if name in package.digest.interpreted:
+                continue
+            sure = among_programs or _is_node(view, package, path)
+            doubts = (bool(sure) or Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
+            if install.kind == "directory":
+                data = {"file": inside}
+                subject = posixpath.dirname(inside)
+                yield Diagnostic(install.at, subject, package.name, data, "folder", (*doubts, Doubt.LATE))
+                break
+            yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
 
 
 def _is_node(view: TargetView, package, script: str) -> bool:

@@ -41,6 +41,10 @@ _ADD = "add `{subject}` to ament_export_dependencies"
 @rule(
     texts={
         "link": Text("`{target}` links `{item}` publicly, but `{subject}` is not exported", _ADD),
+        "written": Text(
+            "`{target}` links `{item}` publicly, but the configuration of `{package}` does not find `{subject}`",
+            "call find_dependency({subject}) in the configuration",
+        ),
         "include": Text("an installed header includes `{header}`, but `{subject}` is not exported", _ADD),
         "messages": Text(
             "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
@@ -83,6 +87,9 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             item = link.item if link.how == "link" else known.name
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
+            if package.build.ament_package is None:
+                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,))
+                continue
             loaded = link.how == "ament" and is_only_loaded(view, package)
             few = Together("passed on by plugins", 1) if loaded else Together("passed on", EXPORTED)
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)

@@ -73,7 +73,7 @@ def _list_targets(view: TargetView, package, installs, started: set[str]) -> Ite
             why = "exported"
         elif target.kind != "executable" and (target.name in plugins or name in plugins):
             why = "plugin"
-        elif target.kind == "library" and target.name in linked and not target.static:
+        elif target.kind == "library" and target.name in linked and not target.archive:
             why = "linked"
         elif target.kind == "executable" and any(
             t.name in installed for t in package.build.targets if t.kind == "executable"

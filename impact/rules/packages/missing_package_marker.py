@@ -47,7 +47,7 @@ def missing_package_marker(view: TargetView, package: Package):
            for _, setup in own):  # fmt: skip
         return
     files = [(posixpath.normpath(destination), path) for _, setup in own for destination, path, _ in setup.data_files]
-    if not files and not any(setup.entry_points for _, setup in own):
+    if not files and not any(setup.entry_points or setup.packages for _, setup in own):
         return
     markers = [path for destination, path in files if destination == _INDEX]
     # nonexistent-setup-path reports markers that do not exist.

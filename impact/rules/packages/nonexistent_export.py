@@ -52,6 +52,10 @@ from .install_rules import is_installed
         "no target": Text(
             "the exported library `{subject}` is not a target of `{package}`", "export the library's target name"
         ),
+        "program": Text(
+            "`{subject}` is exported as library but is a program, so find_package({package}) stops",
+            "leave it out of LIBRARIES",
+        ),
         "system": Text(
             "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing",
             "{advice}",
@@ -112,12 +116,16 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
 
 
 def _list_of_catkin(view: TargetView, package):
-    targets = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
+    targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     for export in package.build.exports:
         if not view.active(export.conditions) or "$" in export.item:
             continue
-        if export.how == "libraries" and export.item not in targets and not package.build.unresolved:
+        target = targets.get(export.item)
+        if export.how == "libraries" and target is not None:
+            if target.kind == "executable" and target.name == export.item and view.certain(export.conditions):
+                yield Diagnostic(export.at, export.item, package.name, kind="program", doubts=(Doubt.DISTURBS,))
+        elif export.how == "libraries" and not package.build.unresolved:
             if (
                 "/" in export.item
                 or export.item.startswith("-")

@@ -1,14 +1,16 @@
 """nonexistent-install: an install rule names a file or folder that does not exist, or a variable that nothing sets.
 
 What it does
-    Reports files, programs and folders in install() that neither the tree has nor the build makes, and variables of
-    catkin for places that are misspelt or were removed in Groovy.
+    Reports files, programs and folders in install() that neither the tree has nor the build makes, rules without
+    DESTINATION, generator expressions as folders, and variables of catkin for places that are misspelt, were removed in
+    Groovy, or are used before catkin_package() sets them.
 
 Why it breaks
-    `make install` stops: "file INSTALL cannot find". With an empty variable the files end up in a wrong place.
+    `make install` stops: "file INSTALL cannot find". CMake stops at a rule without destination, also where its variable
+    is empty; an empty variable before a path puts the files into a wrong place.
 
 Severity
-    error.
+    error; warning for generator expressions, at which only installing symbolic links stops.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -27,6 +29,7 @@ from collections.abc import Iterator
 
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
+from .absent_paths import is_absent
 from .install_rules import list_installing
 
 
@@ -35,6 +38,11 @@ from .install_rules import list_installing
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
+        "no destination": Text("install({kind}) has no {subject}, at which CMake stops", "add it"),
+        "symlinks": Text(
+            "`colcon build --symlink-install` takes `{subject}` for the name of a folder", "write the folder itself"
+        ),
+        "early": Text("`{subject}` is used before catkin_package() sets it", "call catkin_package() before install()"),
         "unset": Text(
             "nothing sets `{subject}`, so files are looked for, or installed, in a wrong place",
             "correct the variable's name",
@@ -52,58 +60,54 @@ def nonexistent_install(view: TargetView):
 
 
 def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
-    made = frozenset(package.build.made)
     for install in installs:
         if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
             continue
+        if not install.destination:
+            yield Diagnostic(install.at, "DESTINATION", package.name, {"kind": install.kind.upper()}, "no destination")
         for item in install.items:
             path = posixpath.normpath(item)
-            if (
-                "$" in item
-                or item.startswith("/")
-                or path in package.files
-                or path in package.folders
-                or path in (".", package.path)
-            ):
+            if _stops_symlinks(package, install, item):
+                subject = item.replace(f"{package.path}/", "") if package.path else item
+                yield Diagnostic(install.at, subject, package.name, kind="symlinks", doubts=(Doubt.CONDITIONAL,))
+            if item.startswith(("/", "build", "devel")) or re.search(r"[$*?<>]", item):
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
-            if any(path.startswith(p) for p in ("build", "devel")) or re.search(r"[*?<>]", item):
+            if install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
+                continue  # a folder that git cannot keep while it is empty
+            if install.kind == "files" and "." in path and _is_written(path):
                 continue
-            if re.search(r"\.so(\.|$)|\.a$|\.dylib$", path) or (
-                install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item)
-            ):
-                continue  # made by the build, or a folder that git cannot keep while it is empty
-            if path + ".in" in package.files or (install.kind == "files" and "." in path and _is_written(path)):
-                continue
-            if _is_made(made, path, install.kind) or view.workspace.is_unread(path):
-                continue
-            inside = path[len(package.path) :].lstrip("/")
-            yield Diagnostic(install.at, inside, package.name, kind="absent")
+            if is_absent(view, package, path):
+                yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
 
 
-def _is_made(made: frozenset[str], path: str, kind: str) -> bool:
-    """True for a path that configuring or building writes, or that holds such ones; made: as Build.made."""
-    if path in made or any(item.endswith("/") and f"{path}/".startswith(item) for item in made):
-        return True
-    return kind == "directory" and any(item.startswith(f"{path}/") for item in made)
+def _stops_symlinks(package, install, item: str) -> bool:
+    """Whether ament's own install(DIRECTORY), which links files instead of copying them, takes an item for the name of
+    a folder that does not exist. Source: ament_cmake_symlink_install_directory.cmake of ament_cmake_core."""
+    if package.build.ament_package is None or install.kind != "directory" or "$<" not in item:
+        return False
+    return not (install.executable or install.only or any("~" in pattern for pattern in install.patterns))
 
 
 def _is_written(path: str) -> bool:
     """True for files that the build itself writes: another command mentions their name."""
-    return not any(path.endswith(e) for e in (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
+    return not path.endswith((".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
 
 
 # What catkin itself sets that may name a place (catkin's all.cmake and catkin_package.cmake).
 _PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_ENV"})
+# What catkin_package() sets of them.
+_OF_CATKIN_PACKAGE = frozenset(
+    f"CATKIN_PACKAGE_{name}_DESTINATION" for name in ("BIN", "ETC", "INCLUDE", "LIB", "PYTHON", "SHARE")
+)
 
 
 def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
-    # A package whose CMake is not known may set variables of its own that are called so.
-    unknown = any(view.offers.package(name) is None for name in others if view.is_package(name))
-    doubts = (Doubt.INCOMPLETE,) if unknown else ()
+    if any(view.offers.package(name) is None for name in others if view.is_package(name)):
+        return  # a package whose CMake is not known may set variables of its own that are called so
     seen = set()
     for use in package.build.uses:
         if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
@@ -114,6 +118,10 @@ def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
             continue
         if not view.certain(use.conditions):
             continue
-        seen.add(use.name)
         kind = "unset, build" if use.name == "CATKIN_BUILD_PREFIX" else "unset"
-        yield Diagnostic(use.at, use.name, package.name, kind=kind, doubts=doubts)
+        if use.name in _OF_CATKIN_PACKAGE:
+            if package.build.catkin_package is None:
+                continue  # a command that is not known may call it
+            kind = "early"
+        seen.add(use.name)
+        yield Diagnostic(use.at, use.name, package.name, kind=kind)

@@ -36,10 +36,11 @@ from typing import NamedTuple
 
 from ...facts.condition import Condition
 from ...model.cmake.build import At, BuildTarget, for_tests
-from ...model.cmake.installed import copied_files
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
+from .absent_paths import is_absent
+from .install_rules import list_places
 
 _CORRECT = "correct or remove the path"
 
@@ -148,7 +149,10 @@ def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, st
     folder = posixpath.dirname(path)
     if use.how == "source" and folder != package.path and folder not in package.folders:
         return "", ""  # generators make folders of their own
-    return (use.how, path[len(package.path) :].lstrip("/")) if _is_absent(view, package, file) else ("", "")
+    name = posixpath.basename(file)
+    if "." not in name and (name.isupper() or any(other.startswith(f"{file}.") for other in package.files)):
+        return "", ""  # CMake tries the endings of sources; capitals are keywords
+    return (use.how, path[len(package.path) :].lstrip("/")) if is_absent(view, package, file) else ("", "")
 
 
 def _find_above(package: Package, path: str) -> str:
@@ -157,21 +161,6 @@ def _find_above(package: Package, path: str) -> str:
     doubled = f"{package.path}/{posixpath.basename(package.path)}/" if package.path else f"{package.name}/"
     inside = path[len(doubled) :] if path.startswith(doubled) and path not in package.files else ""
     return inside if inside and posixpath.join(package.path, inside) in package.files else ""
-
-
-def _is_absent(view: TargetView, package: Package, path: str) -> bool:
-    """True for a path of the package that neither the tree has nor the build makes."""
-    if path in package.files or path in package.folders or path.endswith((".o", ".obj", ".a", ".so")):
-        return False
-    if view.workspace.is_unread(path) or any(path in other.files for other in view.everyone()):
-        return False
-    name = posixpath.basename(path)
-    if "." not in name and (name.isupper() or any(file.startswith(f"{path}.") for file in package.files)):
-        return False  # CMake tries the endings of sources; capitals are keywords
-    return not any(
-        made.rstrip("/").rpartition("/")[2] == name or (made.endswith("/") and path.startswith(made))
-        for made in package.build.made
-    )
 
 
 _OPENED = re.compile(r"\.(?:launch|launch\.(?:py|xml|yaml)|ya?ml|urdf|xacro|srdf|rviz)\Z")
@@ -188,15 +177,12 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)
-        known = owner.build.files and not owner.build.unresolved and f"{path}.in" not in owner.files
-        if known and _is_absent(view, owner, path) and not _is_renamed(owner, name):
+        known = owner.build.files and not owner.build.unresolved
+        if known and is_absent(view, owner, path) and not _is_renamed(owner, name):
             yield Diagnostic(use.at, name, package.name, {"by": owner.name}, "opened", (Doubt.DISTURBS,))
 
 
 def _is_renamed(owner: Package, name: str) -> bool:
     """Whether an install rule puts, or may put, a file to a place of the share folder."""
-    installs = [i for i in owner.build.installs if i.kind in ("files", "directory", "programs")]
-    if any("$" in text for i in installs for text in (i.destination, *i.items)):
-        return True
-    places = (to for i in installs for _, to in copied_files(i, i.destination, owner.digest.files))
-    return f"share/{owner.name}/{name}" in places
+    places = list_places(owner, owner.build.installs)
+    return places is None or f"share/{owner.name}/{name}" in places

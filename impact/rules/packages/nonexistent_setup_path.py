@@ -32,6 +32,7 @@ from ...model.cmake.build import At
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Text, rule
+from .absent_paths import is_absent
 
 _PATTERN = re.compile(r"[*?\[]")
 
@@ -70,12 +71,12 @@ def nonexistent_setup_path(view: TargetView, package: Package):
         for named in _list_paths(setup):
             place = posixpath.normpath(posixpath.join(folder, named.path))
             inside = posixpath.relpath(place, folder or ".")
-            if inside.startswith("..") or view.workspace.is_unread(place):
+            if inside.startswith(".."):
                 continue
-            is_folder = package.has_files(inside)
-            if named.kind == "package" and (is_folder or f"{place}.py" in package.files):
+            if named.kind == "package" and f"{place}.py" in package.files:
                 continue  # some list single modules as packages
-            if place not in package.files:
+            is_folder = place in package.folders and named.kind != "package"
+            if is_folder or is_absent(view, package, place):
                 kind = "folder" if is_folder else named.kind
                 yield Diagnostic(At(file, named.line), named.name, package.name, {}, kind)
 

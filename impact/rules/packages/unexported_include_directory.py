@@ -29,6 +29,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
+from .include_folders import OFF_PATH
 
 
 @rule(
@@ -99,11 +100,6 @@ def _list_without_library(view: TargetView, package: Package, ament: AmentExport
 _OFFERS = frozenset({"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "plugin_description"})
 
 
-# System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
-# hand: the stored index has headers by the path that dependants write, below whichever folder.
-_OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
-
-
 def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
     """Header-only packages that leave the include folder of a system library out."""
     if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
@@ -111,7 +107,7 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
     seen = set()
     for need in view.weighed(package):
         name = need.providers[0].name
-        if need.how != "include" or not need.public or not need.certain or name not in _OFF_PATH or name in seen:
+        if need.how != "include" or not need.public or not need.certain or name not in OFF_PATH or name in seen:
             continue
         if view.answered(need.providers, ament.found):
             continue

@@ -2,14 +2,15 @@
 
 What it does
     Reports calls of functions and macros that a released package defines, where the caller finds neither that package
-    nor one that brings it.
+    nor one that brings it, and configurations that call find_dependency() first of all and do not include its module.
 
 Why it breaks
     CMake stops: "Unknown CMake command".
 
 Severity
     error; warning where CMake may not reach the call, where a found package has unknown dependencies, and in ROS 1,
-    where catkin_make configures all packages in one CMake run, so that another one may have found the package before.
+    where catkin_make configures all packages in one CMake run, so that another one may have found the package before;
+    warning for configurations, which whoever finds them may have brought the macro.
 
 Example
     project(visualizer)
@@ -23,6 +24,8 @@ Not reported
     that no declared package brings (undeclared-test-command reports them).
 """
 
+import re
+
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
@@ -31,12 +34,24 @@ from .undeclared_test_command import find_test_commands
 
 @rule(
     group="missing-find-package",
-    texts=Text(
-        "command `{subject}` comes from `{owner}`, which CMakeLists.txt does not find",
-        "add find_package({owner} REQUIRED)",
-    ),
+    texts={
+        "": Text(
+            "command `{subject}` comes from `{owner}`, which CMakeLists.txt does not find",
+            "add find_package({owner} REQUIRED)",
+        ),
+        "configuration": Text(
+            "the configuration calls {subject}() without including `{owner}`, which defines it",
+            "add include({owner})",
+        ),
+    },
 )
 def unfound_command(view: TargetView, package: Package):
+    for use in package.build.uses:
+        written = use.name == "find_dependency" and re.search(r"onfig\.cmake(?:\.in)?\Z", use.at.path)
+        if use.kind == "command" and written and view.active(use.conditions):
+            data = {"owner": use.context}
+            yield Diagnostic(use.at, use.name, package.name, data, "configuration", (Doubt.DISTURBS,))
+            break
     build, commands = package.build, view.providers.commands.get(view.target.ros, {})
     calls = [use for use in build.uses if use.kind == "command" and use.name in commands]
     if not calls or not build.project or any("find_package(" in reason for _, reason in build.unresolved):

@@ -1,8 +1,9 @@
 """ungiven-package: a target includes headers of a package that is found and not given to it.
 
 What it does
-    Reports packages of ament that CMake finds, whose headers a source of a target includes, and that neither the
-    target is given, itself or through what it links, nor the whole package.
+    Reports packages of ament, and libraries of the system with an include folder of their own, that CMake finds, whose
+    headers a source of a target includes, and that neither the target is given, itself or through what it links, nor
+    the whole package.
 
 Why it breaks
     The compiler does not get the include folder of the package. Until Galactic all packages had one folder in common,
@@ -25,13 +26,13 @@ Not reported
 """
 
 import re
-from collections.abc import Set
+from collections.abc import Iterator, Set
 
 from ...model.cmake.links import may_hide, package_of
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
-from .include_folders import doubts_of_folder, shares_one_folder
+from .include_folders import OFF_PATH, doubts_of_folder, shares_one_folder
 
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 
@@ -41,7 +42,10 @@ _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
     texts=Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
 )
 def ungiven_package(view: TargetView, package: Package):
-    if package.build_type != "ament_cmake" or package.build.unresolved or shares_one_folder(view):
+    if package.build_type != "ament_cmake" or package.build.unresolved:
+        return
+    yield from _list_off_path(view, package)
+    if shares_one_folder(view):
         return
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
@@ -99,6 +103,45 @@ def ungiven_package(view: TargetView, package: Package):
             break
 
 
+def _list_off_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Targets that include headers of a system library outside of the compiler's default path, which CMake finds, and
+    that are given nothing that may bring its folder."""
+    build = package.build
+    targets = {t.name: t for t in build.targets}
+    everywhere = [item for item, _ in build.include_dirs] + [link.item for link in build.links]
+    seen = set()
+    for include in package.digest.includes:
+        providers = view.header(include.path)[:1]
+        if not include.targets or not providers or providers[0].name not in OFF_PATH:
+            continue
+        if _NAMES_FOLDER.match(include.path):
+            continue
+        found = ((f.name, view.cmake(f.name)) for f in build.found if f.how == "find_package")
+        name, bringing = next(((n, by) for n, by in found if by and by[0].name == providers[0].name), ("", ()))
+        if not name or name in seen or not view.certain(include.conditions):
+            continue
+        for target in include.targets:
+            items = _find_given(targets, target)
+            if items is None or not view.certain(targets[target].conditions):
+                continue
+            items = {item for item in (*items, *everywhere) if item not in targets}
+            if any("$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item) for item in items):
+                continue
+            given = {package_of(item) for item in items}
+            known = {n: {p.name for p in view.cmake(n)[:1]} for n in given if "/" not in n and n not in package.folders}
+            brought = view.spread({key for n, keys in known.items() for key in (n, *keys)})
+            alike = any(name.lower()[:3] in item.lower() for item in items)
+            if alike or not all(known.values()) or view.answered(bringing, brought):
+                continue
+            seen.add(name)
+            data = {"target": target, "header": include.path}
+            doubts = (include.role == "build" or Doubt.TEST, Doubt.INCOMPLETE)
+            yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
+            break
+
+
+# Includes by the name of the folder itself, as in <eigen3/Eigen/Core>.
+_NAMES_FOLDER = re.compile(r"(?:eigen3|pcl-[\d.]+|bullet|OGRE|libxml2)/")
 _VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
 
 

@@ -2,8 +2,8 @@
 
 What it does
     Compares the install rules of CMake with the launch files, scripts and data that launch files and scripts of the
-    workspace start or open in the package's share folder, and reports packages of catkin that only hold data and
-    install nothing.
+    workspace start or open in the package's share folder, and with the folder `launch` of packages of ROS 2. Reports
+    packages of catkin that only hold data and install nothing.
 
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
@@ -23,13 +23,14 @@ Not reported
 """
 
 import posixpath
+import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
 from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import is_installed, list_installing, list_references
+from .install_rules import is_installed, list_installing, list_places, list_references
 
 
 @rule(
@@ -44,7 +45,15 @@ from .install_rules import is_installed, list_installing, list_references
             "`{file}` is opened through the package's share folder but is not installed",
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
-        "script": Text("`{subject}` is started by a launch file but is not installed", "{how}"),
+        "elsewhere": Text(
+            "`{file}` is opened through the package's share folder but is installed elsewhere",
+            "install it as {share}/{file}",
+        ),
+        "launch": Text(
+            "`{file}` cannot be launched: the folder `{subject}` is not installed",
+            "install(DIRECTORY {subject} DESTINATION {share})",
+        ),
+        "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
@@ -72,20 +81,64 @@ def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:
 
 
 def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
-    """Launch files and data that something of the workspace opens and no rule installs."""
-    missing: dict[str, str] = {}
+    """Launch files and data that something of the workspace opens, and launch files of ROS 2, that no rule puts into
+    the share folder at the path by which they are opened."""
+    missing: dict[str, tuple[str, str]] = {}
     catkin = package.build_type == "catkin"
+    places = list_places(package, installs)
     for name in sorted(opened):
         path = posixpath.normpath(posixpath.join(package.path, name)) if "$" not in name else ""
-        if path in package.files and not is_installed(package, installs, path):
-            folder = name.split("/")[0] if "/" in name else name
-            missing.setdefault(folder, name)
+        files = [path] if path in package.files else _list_below(package, path)
+        inside = posixpath.relpath(path, package.path or ".")
+        if not files or inside == "." or _lies_in(places, package.name, inside):
+            continue
+        kind = "opened"
+        if any(is_installed(package, installs, file) for file in files):
+            if places is None:
+                continue
+            kind = "elsewhere"
+        missing.setdefault(inside.split("/")[0], (inside, kind))
     missing.pop("package.xml", None)  # every build type installs it
-    for folder, name in missing.items():
+    for folder, name in _list_launch_folders(package, installs):
+        missing.setdefault(folder, (name, "launch"))
+    for folder, (name, kind) in missing.items():
         at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         data = {"file": name, "share": share}
-        yield Diagnostic(at, folder, package.name, data, "opened", (Doubt.DISTURBS,))
+        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,))
+
+
+def _list_below(package, folder: str) -> list[str]:
+    """The files of a folder of the package."""
+    return [path for path in package.digest.files if path.startswith(f"{folder}/")] if folder in package.folders else []
+
+
+def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
+    """Whether a file or folder is found where the package is installed, by its path below the share folder. roslaunch
+    looks for a program by its name alone in lib/<package>. Source: _find_executable() of its substitution_args.py."""
+    name = posixpath.basename(inside)
+    return places is not None and not places.isdisjoint((f"share/{package}/{inside}", f"lib/{package}/{name}"))
+
+
+# Launch files of ROS 2, which `ros2 launch` finds in the share folder alone.
+_LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
+
+
+def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
+    """The folder of launch files where no rule installs any file of it, with a launch file in it that starts or opens
+    something: in ROS 1, which finds them in the source space too, an installed program of the package."""
+    files = _list_below(package, posixpath.join(package.path, "launch"))
+    if package.build.catkin_package is None and package.build.ament_package is None:
+        return  # what comes after a command that cannot be followed is not known
+    if any(is_installed(package, installs, path) for path in files):
+        return
+    programs = {item for install in installs if install.kind == "targets" for item in install.items}
+    for use in package.digest.references:
+        path, r = use.at.path, use.reference
+        own = (r.kind, r.package) == ("executable", package.name) and r.name in programs
+        if use.role == "run" and path in files and (own if package.build_type == "catkin" else _LAUNCH.search(path)):
+            yield "launch", path[len(package.path) :].lstrip("/")
+            return
 
 
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:

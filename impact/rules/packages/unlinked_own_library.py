@@ -1,4 +1,4 @@
-"""unlinked-own-library: a target uses functions that another library of its package defines, but does not link it.
+"""unlinked-own-library: a target uses functions that a source of its package defines, and has no part in that source.
 
 What it does
     Reports programs and shared libraries whose sources include a header of the package and use a function of a class in
@@ -33,10 +33,16 @@ from .catkin_links import PACKAGE_VARIABLE, plain
 
 @rule(
     severity="warning",
-    texts=Text(
-        "`{target}` uses `{function}` but does not link `{subject}`, which defines it",
-        "target_link_libraries({target} {subject})",
-    ),
+    texts={
+        "library": Text(
+            "`{target}` uses `{function}` but does not link `{subject}`, which defines it",
+            "target_link_libraries({target} {subject})",
+        ),
+        "source": Text(
+            "`{target}` uses `{function}` but does not compile `{subject}`, which defines it",
+            "add `{subject}` to the sources of `{target}`, or make a library of it that both link",
+        ),
+    },
 )
 def unlinked_own_library(view: TargetView, package: Package):
     if package.build.unresolved:
@@ -56,7 +62,8 @@ def unlinked_own_library(view: TargetView, package: Package):
             if (name, other) in seen or target.static or target.kind not in ("executable", "library", "module", "test"):
                 continue
             libraries = sorted(n for n in definers if targets[n].kind == "library" and n != name)
-            if not libraries or not view.certain(c for c in target.conditions if "TESTING" not in c.text):
+            programs = not libraries and all(targets[n].kind == "executable" for n in definers)
+            if not (libraries or programs) or not view.certain(c for c in target.conditions if "TESTING" not in c.text):
                 continue
             items = links[name]
             if items is None or any(
@@ -74,5 +81,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             data = {"target": name, "function": function}
             tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)
             doubts = (Doubt.INCOMPLETE, not tested or view.target.ros == 2 or Doubt.TEST)
-            yield Diagnostic(target.at, libraries[0], package.name, data, doubts=doubts)
+            subject = libraries[0] if libraries else other[len(package.path) :].lstrip("/")
+            kind = "library" if libraries else "source"
+            yield Diagnostic(target.at, subject, package.name, data, kind, doubts)
             break

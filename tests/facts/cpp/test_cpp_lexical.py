@@ -170,6 +170,8 @@ def test_using():
         ("PLUGINLIB_EXPORT_CLASS(\n  ns :: Plugin,\n  base::Base)", ("ns::Plugin",)),
         ("RCLCPP_COMPONENTS_REGISTER_NODE(::ns::Node)", ("ns::Node",)),
         ("PLUGINLIB_DECLARE_CLASS(pkg, Name, ns::Plugin, nodelet::Nodelet)", ("ns::Plugin",)),
+        ("GZ_REGISTER_MODEL_PLUGIN(Obstacles)", ("Obstacles",)),
+        ("IGNITION_ADD_PLUGIN(\n  ns::Pump, gz::sim::System)", ("ns::Pump",)),
         ("#define PLUGINLIB_EXPORT_CLASS(a, b) x", ()),
         ("// PLUGINLIB_EXPORT_CLASS(a, b)", ()),
     ],

@@ -1,0 +1,104 @@
+"""unexported-header: a package includes a header that another package of the workspace does not offer.
+
+What it does
+    Compares the headers of other packages of the workspace that a package compiles with what those install (ament), or
+    with the INCLUDE_DIRS of their catkin_package() (catkin).
+
+Why it breaks
+    The compiler stops: "No such file or directory". In catkin's devel space a package gives only its INCLUDE_DIRS to
+    those that find it, and packages of ament are found where they are installed.
+
+Severity
+    error for a header of a package of ament that no rule installs; warning under a condition, in tests of ROS 1, and
+    for INCLUDE_DIRS that are missing, which whoever finds the installed package does without.
+
+Example
+    catkin_package()                            # and another package includes arm/arm.h of include/
+
+Use instead
+    catkin_package(INCLUDE_DIRS include)
+
+Not reported
+    Packages of which not everything that they install can be told; headers that another package has too, or that the
+    includer reaches through an include folder of its own.
+"""
+
+import posixpath
+from collections.abc import Iterator
+
+from ...model.cmake.build import At
+from ...model.cmake.installed import installed_headers
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+
+
+@rule(
+    group="missing-export",
+    texts={
+        "not installed": Text(
+            "`{by}` includes `{subject}`, which `{owner}` does not install",
+            "install(DIRECTORY include/ DESTINATION include), and export the folder",
+        ),
+        "include dirs": Text(
+            "`{by}` includes `{subject}`, but catkin_package() of `{owner}` exports no INCLUDE_DIRS",
+            "catkin_package(INCLUDE_DIRS {folder} ...)",
+        ),
+    },
+)
+def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """package: the one whose headers others include."""
+    if package.name not in view.workspace.includers or not _is_known(package):
+        return
+    headers = {f"/{path}": path for path in package.digest.headers if "/include/" in f"/{path}"}
+    kind = _find_kind(view, package)
+    installed = installed_headers(package)
+    if not headers or not kind or (kind == "not installed" and not installed.known):
+        return
+    for name in sorted(view.workspace.includers[package.name]):
+        other = view.workspace.packages[name]
+        found = {one.name for one in other.build.found if view.certain(one.conditions)}
+        if package.name not in found:
+            continue  # missing-find-package reports it
+        for include in other.digest.includes:
+            path = next((p for end, p in headers.items() if end.endswith(f"/include/{include.path}")), "")
+            if not path or not include.targets or not view.certain(include.conditions):
+                continue
+            if kind == "not installed" and path in installed.headers:
+                continue
+            if view.workspace.provides_header(include.path) != [package.name] or _reaches(other, path):
+                continue
+            folder = path[len(package.path) :].lstrip("/").removesuffix(f"/{include.path}")
+            data = {"by": name, "owner": package.name, "folder": folder}
+            build = package.build
+            at = build.catkin_package or build.ament_package or At(build.files[0], 1)
+            doubts = doubts_of_place(view, include.role, include.conditions)
+            lasting = Doubt.DISTURBS if kind == "include dirs" else None
+            yield Diagnostic(at, include.path, package.name, data, kind, (*doubts, lasting))
+            return
+
+
+def _is_known(package: Package) -> bool:
+    """Whether all that the package gives to those who find it can be seen."""
+    build = package.build
+    if build.unresolved or build.handed_on or any(e.how == "cfg_extras" or "$" in e.item for e in build.exports):
+        return False
+    return not any(f.how == "ament_auto" for f in build.found)
+
+
+def _find_kind(view: TargetView, package: Package) -> str:
+    """The kind of text that tells how dependants may miss a header; empty where they do not."""
+    build = package.build
+    if build.ament_package is not None and view.target.ros == 2:
+        return "not installed"
+    if build.catkin_package is None or view.target.ros == 2:
+        return ""
+    offered = [e for e in build.exports if e.how == "include_dirs" and view.active(e.conditions)]
+    return "" if offered else "include dirs"
+
+
+def _reaches(package: Package, header: str) -> bool:
+    """Whether a package has an include folder of its own that a header of another one lies in, or may."""
+    folders = [item for item, _ in package.build.include_dirs]
+    folders += [link.item for target in package.build.targets for link in target.links if link.how == "include"]
+    return any(header.startswith(f"{posixpath.normpath(folder)}/") for folder in folders)
