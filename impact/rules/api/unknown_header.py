@@ -62,11 +62,10 @@ def unknown_header(view: TargetView, package: Package):
             yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts)
 
 
-def _doubts_of_misspelt(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+def _doubts_of_misspelt(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt | bool, ...]:
     """Nobody can compile an installed header with it, nor the package itself where it does."""
     if include.role == "aside" or not (include.targets or include.public):
         return (Doubt.UNCOMPILED,)
     name = include.path.rpartition("/")[2]
-    if package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made):
-        return (Doubt.INCOMPLETE,)  # the build may make it
-    return () if view.certain(include.conditions) else (Doubt.GUARDED,)
+    made = package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made)
+    return (not made or Doubt.INCOMPLETE, view.certain(include.conditions) or Doubt.GUARDED)

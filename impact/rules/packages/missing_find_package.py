@@ -28,7 +28,7 @@ from collections.abc import Iterator
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
-from ...model.view import TargetView, interface_of
+from ...model.view import Need, TargetView, interface_of
 from ...model.workspace import Package
 from ...targets.providers.libraries import system_libraries
 from ...targets.version import at_least
@@ -112,7 +112,7 @@ def missing_find_package(view: TargetView, package: Package):
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
 
 
-def _list_given(package: Package, need) -> Iterator[str]:
+def _list_given(package: Package, need: Need) -> Iterator[str]:
     """What the targets that include a header are given, themselves or all targets."""
     yield from (item for item, _ in package.build.include_dirs)
     yield from (link.item for link in package.build.links)

@@ -48,12 +48,12 @@ _MAKES_TARGETS = "1.1.0"
 def refused_cmake_name(view: TargetView, package: Package):
     build = package.build
     for found in build.found:
-        if found.how == "find_package" and "::" in found.name and view.active(found.conditions):
+        if found.how not in ("find_package", "catkin") or not view.active(found.conditions):
+            continue
+        kind = "target" if "::" in found.name else "debian" if _is_of_debian(view, package, found.name) else ""
+        if kind:
             doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
-            yield Diagnostic(found.at, found.name, package.name, kind="target", doubts=doubts)
-        elif found.how in ("find_package", "catkin") and _is_of_debian(view, package, found.name):
-            doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
-            yield Diagnostic(found.at, found.name, package.name, kind="debian", doubts=doubts)
+            yield Diagnostic(found.at, found.name, package.name, kind=kind, doubts=doubts)
     seen = set()
     for name, at, conditions in build.repeated:
         if name not in seen and view.active(conditions):
