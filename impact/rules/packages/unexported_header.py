@@ -2,15 +2,17 @@
 
 What it does
     Compares the headers of other packages of the workspace that a package compiles with what those install (ament), or
-    with the INCLUDE_DIRS of their catkin_package() (catkin).
+    with the INCLUDE_DIRS of their catkin_package() (catkin). Also reports packages of catkin that export no LIBRARIES,
+    where a program includes a header of a library of theirs.
 
 Why it breaks
-    The compiler stops: "No such file or directory". In catkin's devel space a package gives only its INCLUDE_DIRS to
-    those that find it, and packages of ament are found where they are installed.
+    The compiler stops: "No such file or directory", or the linker at undefined references. In catkin's devel space a
+    package gives only its INCLUDE_DIRS to those that find it, and packages of ament are found where they are installed.
 
 Severity
     error for a header of a package of ament that no rule installs; warning under a condition, in tests of ROS 1, and
-    for INCLUDE_DIRS that are missing, which whoever finds the installed package does without.
+    for INCLUDE_DIRS that are missing, which whoever finds the installed package does without, or LIBRARIES, of which a
+    program may need nothing.
 
 Example
     catkin_package()                            # and another package includes arm/arm.h of include/
@@ -28,9 +30,12 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import At
 from ...model.cmake.installed import installed_headers
+from ...model.cmake.links import linked_items
+from ...model.package import IncludeUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from .ament_exports import list_installed_targets
 
 
 @rule(
@@ -44,6 +49,10 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
             "`{by}` includes `{subject}`, but catkin_package() of `{owner}` exports no INCLUDE_DIRS",
             "catkin_package(INCLUDE_DIRS {folder} ...)",
         ),
+        "library": Text(
+            "`{by}` includes `{subject}` of `{library}`, but catkin_package() of `{owner}` exports no LIBRARIES",
+            "catkin_package(LIBRARIES {library} ...)",
+        ),
     },
 )
 def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -53,6 +62,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
     headers = {f"/{path}": path for path in package.digest.headers if "/include/" in f"/{path}"}
     kind = _find_kind(view, package)
     installed = installed_headers(package)
+    libraries = _list_libraries(package) if kind == "library" else {}
     if not headers or not kind or (kind == "not installed" and not installed.known):
         return
     for name in sorted(view.workspace.includers[package.name]):
@@ -66,14 +76,16 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
                 continue
             if kind == "not installed" and path in installed.headers:
                 continue
+            if kind == "library" and not (path in libraries and _is_unlinked(other, include, libraries[path])):
+                continue
             if view.workspace.provides_header(include.path) != [package.name] or _reaches(other, path):
                 continue
             folder = path[len(package.path) :].lstrip("/").removesuffix(f"/{include.path}")
-            data = {"by": name, "owner": package.name, "folder": folder}
+            data = {"by": name, "owner": package.name, "folder": folder, "library": libraries.get(path, "")}
             build = package.build
             at = build.catkin_package or build.ament_package or At(build.files[0], 1)
             doubts = doubts_of_place(view, include.role, include.conditions)
-            lasting = Doubt.DISTURBS if kind == "include dirs" else None
+            lasting = {"include dirs": Doubt.DISTURBS, "library": Doubt.INCOMPLETE}.get(kind)
             yield Diagnostic(at, include.path, package.name, data, kind, (*doubts, lasting))
             return
 
@@ -93,8 +105,24 @@ def _find_kind(view: TargetView, package: Package) -> str:
         return "not installed"
     if build.catkin_package is None or view.target.ros == 2:
         return ""
-    offered = [e for e in build.exports if e.how == "include_dirs" and view.active(e.conditions)]
-    return "" if offered else "include dirs"
+    offered = {e.how for e in build.exports if view.active(e.conditions)}
+    return "include dirs" if "include_dirs" not in offered else "library" if "libraries" not in offered else ""
+
+
+def _list_libraries(package: Package) -> dict[str, str]:
+    """Headers of the package, each with the installed library alone that compiles it."""
+    made = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
+    return {path: names[0] for path, names in package.digest.source_targets if len(names) == 1 and names[0] in made}
+
+
+def _is_unlinked(package: Package, include: IncludeUse, library: str) -> bool:
+    """Whether a program whose own source includes a header links nothing that is called like its library."""
+    for target in package.build.targets:
+        if target.kind == "executable" and target.name in include.targets and include.at.path in target.sources:
+            items = linked_items(package, target.name)
+            if items is not None and not any(library in item for item in items):
+                return True
+    return False
 
 
 def _reaches(package: Package, header: str) -> bool:
