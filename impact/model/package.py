@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from ...edges.memory import cached_method
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
@@ -634,7 +635,6 @@ class _Join:
         compiled = {path: role[2] for path, role in roles.items() if role[2] and not is_header(path)}
         if len(set(compiled.values())) < 2:
             return
-        words = cache(lambda path: _spoken(self.cpp[path]))
 
         def included(path: str) -> Collection[str]:
             return {to for to, _ in self.resolved.get(path, ()) if to is not None}
@@ -642,7 +642,7 @@ class _Join:
         def defined(paths: Collection[str]) -> Mapping[str, Collection[str]]:
             return {path: one.functions for path, one in zip(paths, self.declared(paths), strict=True)}
 
-        yield from list_own_calls(compiled, included, words, defined)
+        yield from list_own_calls(compiled, included, self.spoken, defined)
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
@@ -853,7 +853,7 @@ class _Join:
 
         if self.changing is None:
             return
-        spoken = {path: _spoken(facts) for path, facts in self.cpp.items() if path in roles}
+        spoken = {path: self.spoken(path) for path in self.cpp if path in roles}
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
@@ -900,9 +900,16 @@ class _Join:
             from ..facts.cpp.code import CppCode
             from .cpp.resolver import KnownFile
 
-            words = _spoken(self.cpp[path]) if path in self.cpp else frozenset()
+            words = self.spoken(path) if path in self.cpp else frozenset()
             known = self._known[path] = KnownFile(CppCode(self.read(path)), words)
         return known
+
+    @cached_method
+    def spoken(self, path: str) -> frozenset[str]:
+        """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
+        facts = self.cpp[path]
+        parts = (part for name in facts.qualified for part in name.text.split("::"))
+        return frozenset((*facts.words.split(" "), *parts, *facts.using))
 
     def reached_files(self, path: str) -> set[str]:
         """The package's own files that a file includes, directly or through each other."""
@@ -1154,15 +1161,6 @@ def _list_interpreted(facts: CMakeFile) -> Iterator[str]:
     texts = [[argument.text for argument in c.arguments] for c in facts.commands if "install" not in c.name]
     if any(one == "COMMAND" and "python" in other.lower() for text in texts for one, other in itertools.pairwise(text)):
         yield from (one.rpartition("/")[2] for text in texts for one in text if one.endswith(".py"))
-
-
-def _spoken(facts: CppFile) -> frozenset[str]:
-    """Every word of a file that has four letters or more, and all parts of its qualified names."""
-    found = set(facts.words.split(" "))
-    for name in facts.qualified:
-        found.update(name.text.split("::"))
-    found.update(facts.using)
-    return frozenset(found)
 
 
 # Headers that nobody includes by themselves.
