@@ -79,6 +79,8 @@ class _TooMuch(Exception):
 SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 # Commands that read sources and compile nothing.
 _NO_BUILDER = re.compile(r"lint|format|tidy|check|uncrustify|style|doc|translation|coverage|install|propert|package")
+# Commands of other packages that call find_package() for their arguments.
+_FINDER = re.compile(r"find\w*_packages?(?:_|\Z)")
 
 # Commands that do something else, or stop, where an argument is missing.
 _NEEDS_VALUES = frozenset(
@@ -328,7 +330,16 @@ class Interpreter:
         if name not in BUILTIN_COMMANDS:
             self.use_command(call)
             self.pass_sources(call, words)
+            self.pass_packages(call, words)
         return NORMAL
+
+    def pass_packages(self, call: CommandCall, words: list[Word]) -> None:
+        """Notes what is given to a command that nothing defines and that is called as one which finds packages."""
+        if _FINDER.search(call.name) and call.name not in MODULE_OF:
+            for item in words:
+                if not item.isupper():
+                    place, conditions = self.place(item.at), self.under(item)
+                    self.add_found(FoundPackage(str(item), "passed", place, conditions=conditions))
 
     def pass_sources(self, call: CommandCall, words: list[Word]) -> None:
         """Remembers the sources given to a command that nothing defines: it most likely builds them."""
