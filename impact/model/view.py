@@ -747,6 +747,12 @@ class TargetView:
             and not target.other_generation(n)  # nor does a package that cannot be had
         )  # fmt: skip
 
+    def brings_own_build(self, package: Package, wanted: str) -> bool:
+        """Whether something comes along that ROS releases as built with plain CMake or Meson, and that is called after
+        the library of a header or CMake package: it most likely installs what is wanted (`mrpt2`, `mrpt-maps`)."""
+        stem = re.split(r"[^a-z]", wanted.lower())[0]
+        return len(stem) > 2 and any(n.startswith(stem) and self._is_plain_build(n) for n in self.closure(package))
+
     def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
         platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
@@ -763,12 +769,16 @@ class TargetView:
         return [*self._opaque[package.name], *unread]
 
     def _is_unread_library(self, name: str) -> bool:
-        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson, and what it
-        installs is not stored."""
+        """Whether what a plain build installs is not stored."""
+        return self._is_plain_build(name) and self.offers.package(name) is None
+
+    @cached_method
+    def _is_plain_build(self, name: str) -> bool:
+        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson."""
         if name in self.workspace.packages or self.target.version(name) is None:
             return False
         types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
-        return not types.isdisjoint(("cmake", "meson")) and self.offers.package(name) is None
+        return not types.isdisjoint(("cmake", "meson"))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
