@@ -171,6 +171,9 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
 
     tree, store, gathered, discovered, ros, targets, config, tracked_names = read
     asked_versions = AskedVersions(chosen.target for chosen in targets)
+    generations = {chosen.target.ros for chosen in targets}
+    if len(generations) == 1:
+        (ros,) = generations  # packages for both are linked as the targets build them
     workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
     gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)

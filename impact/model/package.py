@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
@@ -261,18 +262,26 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     distros: tuple[tuple[str, DistroFile], ...] = ()
 
 
+BUILD_TOOLS = ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin")
+"""Build types that ROS packages declare as tools; `ament_python` is no package."""
+
+
 def build_type_of(manifest: Manifest, ros: int) -> str:
     """The build type that holds for a ROS generation: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..."""
     fallback = ""
+    here = Environment(ros_version=str(ros))
     for kind, condition in manifest.build_types:
-        text = condition.replace(" ", "").replace('"', "").replace("'", "")
-        if not text or f"$ROS_VERSION=={ros}" in text:
+        if not condition or holds(Condition("manifest", condition), here):
             return kind
         fallback = fallback or kind
     if fallback:
         return fallback
-    tools = {d.name for d in manifest.dependencies if d.kind == "buildtool"}
-    for kind in ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin"):
+    tools = {
+        d.name
+        for d in manifest.dependencies
+        if d.kind == "buildtool" and (not d.condition or holds(Condition("manifest", d.condition), here) is not False)
+    }
+    for kind in BUILD_TOOLS:
         if kind in tools:
             return kind.removesuffix("_auto")
     return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
