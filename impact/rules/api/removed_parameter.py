@@ -28,7 +28,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.evidence import of_offered
 from ..rule import Diagnostic, Text, rule
-from .diagnosis import is_of_another_distro
+from .diagnosis import is_of_another_distro, lacking_of
 
 _FEW = 3
 """So many of one owner are reported one by one; of more the first is reported, and how many there are."""
@@ -79,4 +79,7 @@ def _diagnose(package: Package, one: UndeclaredParameter, more: int = 0) -> Diag
         "more": more,
     }
     kind = f"{'removed' if one.is_gone else 'not yet'}{', many' if more else ''}"
-    return Diagnostic(one.use.at, one.use.name, package.name, data, kind, evidence=of_offered(offered))
+    return Diagnostic(
+        one.use.at, one.use.name, package.name, data, kind,
+        evidence=of_offered(offered), together=lacking_of(offered.package),
+    )  # fmt: skip

@@ -30,11 +30,12 @@ from ...model.cmake.links import exported_targets, passed_on_package, public_lin
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import EXPORTED, Diagnostic, Doubt, Text, Together, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
+_ONCE = (Together("not exported"),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 
@@ -83,9 +84,7 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             item = link.item if link.how == "link" else known.name
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
-            loaded = link.how == "ament" and is_only_loaded(view, package)
-            few = Together("passed on by plugins", 1) if loaded else Together("passed on", EXPORTED)
-            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=_ONCE)
 
 
 def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
@@ -123,8 +122,8 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
         apart = overlaid or not shares_one_folder(view)
         missed = apart and needed and not _comes_with_client_library(view, name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
-        few = Together("included", EXPORTED)
-        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts, together=few)
+        data = {"header": need.subject}
+        yield Diagnostic(need.at, name, package.name, data, "include", doubts, together=_ONCE)
 
 
 def _list_of_messages(view: TargetView, package):
@@ -140,4 +139,4 @@ def _list_of_messages(view: TargetView, package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
                 reach |= {name}
-                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,))
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,), together=_ONCE)

@@ -35,7 +35,7 @@ Not reported
 
 from ...model.view import TargetView, weight
 from ...model.workspace import Package
-from ..rule import AT_RUN_TIME, Diagnostic, Text, Together, rule, severity
+from ..rule import Diagnostic, Text, Together, rule, severity
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
@@ -51,7 +51,8 @@ def undeclared_package(view: TargetView, package: Package):
     firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
-        at_run_time = first.how not in (*ASKED, "include")
+        # Launch files and modules are used one by one, and whoever declares the first looks for the others.
+        at_run_time = () if first.how in (*ASKED, "include") else (Together("run"),)
         yield Diagnostic(
             first.at,
             name,
@@ -59,5 +60,5 @@ def undeclared_package(view: TargetView, package: Package):
             describe_need(package, first),
             doubts=doubts,
             fix=declare_need(view, package, first, name) if severity(*doubts) != "note" else (),
-            together=Together("run", AT_RUN_TIME) if at_run_time else None,
+            together=at_run_time,
         )
