@@ -622,7 +622,10 @@ class _Join:
                         around = self.macros.asked(include.conditions, names)
                         stack.append((to, under + around if around else under))
 
-        for source, targets in roots.items():
+        # A header among the sources of a target is compiled with the sources that include it, and not for itself.
+        for source, targets in sorted(roots.items(), key=lambda root: is_header(root[0])):
+            if is_header(source) and source in reached:
+                continue
             inside = role_of_folder(self.inside(source))
             for target in targets:
                 role = "test" if target.kind == "test" or inside == "test" else "build"
@@ -631,7 +634,8 @@ class _Join:
                 ):
                     role = "test"
                 own = next((conditions for path, conditions in target.guarded if path == source), ())
-                walk(source, role, False, (target.name,), target.conditions + own)
+                names = () if is_header(source) else (target.name,)
+                walk(source, role, False, names, target.conditions + own)
         for header in self.installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}

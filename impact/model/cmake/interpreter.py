@@ -439,7 +439,7 @@ class Interpreter:
             outcomes.insert(0, {})
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
-        self.merge_outcomes(outcomes)
+        self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else ())
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
             rest = structs.replace(own[0], negated=not own[0].negated, gate=self.at_gate(own[0]))
             self.conditions = merge(self.conditions, (rest,))
@@ -488,8 +488,9 @@ class Interpreter:
         del self.journal[mark:]
         return signal, changes
 
-    def merge_outcomes(self, outcomes) -> None:
-        """Leaves in each variable what the branches wrote, joined."""
+    def merge_outcomes(self, outcomes, untaken: tuple[Condition, ...] = ()) -> None:
+        """Leaves in each variable what the branches wrote, joined. untaken: what holds where the only branch is not
+        taken; what that branch takes out of a list is left under this."""
         touched: dict[tuple[int, str], dict[str, CMakeValue]] = {}
         for changes in outcomes:
             for key, (where, _) in changes.items():
@@ -500,6 +501,14 @@ class Interpreter:
                 # Where no branch has set it, a found package may have.
                 unknown = CMakeValue((word(f"${{{name}}}", self.here(), (), False),), False)
                 left = [value if value is not None else unknown for value in left]
+            whole, part = (left[0], left[-1]) if untaken and len(left) == 2 else (None, None)
+            if whole is not None and part is not None and set(part.words) < set(whole.words):
+                kept = set(part.words)
+                words = (
+                    item if item in kept else word(item, item.at, merge(item.conditions, untaken), item.sure)
+                    for item in whole.words
+                )
+                left[0] = CMakeValue(tuple(words), whole.sure, whole.defined)
             value = join(left)
             if value is not None:
                 self.spend(len(value.words) >> 5)
