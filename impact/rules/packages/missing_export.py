@@ -108,7 +108,7 @@ def _comes_with_client_library(view: TargetView, name: str) -> bool:
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
     """Packages that installed headers include."""
     links = not ament.hows.isdisjoint(("ament_export_libraries", "ament_export_targets"))
-    needed = links or package.name in view.workspace.includers
+    needed, loaded = links or package.name in view.workspace.includers, is_only_loaded(view, package)
     found = {f.name for f in package.build.found}
     for need in view.weighed(package):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, ament.found):
@@ -120,7 +120,7 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
         apart = overlaid or not shares_one_folder(view)
-        missed = apart and needed and not _comes_with_client_library(view, name)
+        missed = apart and needed and not loaded and not _comes_with_client_library(view, name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
         data = {"header": need.subject}
         yield Diagnostic(need.at, name, package.name, data, "include", doubts, together=_ONCE)
