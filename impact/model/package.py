@@ -416,6 +416,7 @@ class _Join:
         self._known: dict[str, KnownFile] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
+        self.interpreted: set[str] = set()
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
@@ -435,7 +436,7 @@ class _Join:
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
-        interpreted: set[str] = set()
+        interpreted = self.interpreted
         shells: list[str] = []
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
@@ -1117,7 +1118,23 @@ class _Join:
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
-        return self.role(path) or ("run" if path in self.started or self.is_installed(path) else "aside")
+        role = self.role(path)
+        if role == "test" and not self.is_run_as_test(path):
+            return "aside"
+        return role or ("run" if path in self.started or self.is_installed(path) else "aside")
+
+    def is_run_as_test(self, path: str) -> bool:
+        """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one."""
+        build = self.build
+        if self.build_type == "ament_python" or not build.files or path in self.started or self.is_installed(path):
+            return True
+        if build.unresolved or any(use.kind == "command" and "test" in use.name for use in build.uses):
+            return True
+        if posixpath.basename(path) in self.interpreted:
+            return True
+        run = [source for target in build.targets if target.kind == "test" for source in target.sources]
+        folders = [one if "." not in posixpath.basename(one) else posixpath.dirname(one) for one in run]
+        return any("$" in folder or path.startswith(f"{folder}/") for folder in folders)
 
     def start_scripts(self, files: dict[str, PythonFile], names: Container[str]) -> None:
         """Notes the scripts of these names, and the modules beside them that they import."""
@@ -1151,7 +1168,7 @@ class _Join:
                     folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
                 else:
                     single.update(posixpath.normpath(item) for item in rule.items)
-            if any("$" in item for item in (*single, *folders)):
+            if any("$" in item and not _BUILT.match(item) for item in (*single, *folders)):
                 folders.append(self.path)
             self._covered = single, tuple(folders)
         single, folders = self._covered
@@ -1160,6 +1177,9 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+_BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
 
 
 def _list_interpreted(facts: CMakeFile) -> Iterator[str]:
