@@ -1128,7 +1128,7 @@ class _Join:
         build = self.build
         if self.build_type == "ament_python" or not build.files or path in self.started or self.is_installed(path):
             return True
-        if build.unresolved or any(use.kind == "command" and "test" in use.name for use in build.uses):
+        if build.unresolved or any(_MAY_TEST.search(u.name) for u in build.uses if u.kind == "command"):
             return True
         if posixpath.basename(path) in self.interpreted:
             return True
@@ -1179,6 +1179,8 @@ class _Join:
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
+# Commands that may run tests, besides those that the interpreter knows and those of linters.
+_MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
 
 
