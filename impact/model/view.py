@@ -991,7 +991,8 @@ class TargetView:
                 found.required
                 or (found.how == "catkin" and not found.quiet)
                 or (found.name == "PkgConfig" and self._requires_modules(package))
-                or self._is_called(package, found.name),
+                or self._is_called(package, found.name)
+                or (not found.required and self._is_linked(package, found.name)),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -1066,6 +1067,20 @@ class TargetView:
             name in commands.get(use.name, "").split() and "_FOUND" not in " ".join(c.text for c in use.conditions)
             for use in package.build.uses
             if use.kind == "command" and self.certain(use.conditions)
+        )
+
+    def _is_linked(self, package: Package, name: str) -> bool:
+        """Whether a target that a package defines is linked wherever it was looked for, found or not."""
+        targets, prefix = package.build.targets, f"{name}::"
+        if any(t.name.startswith(prefix) or t.name.lower() == name.lower() for t in targets):
+            return False  # it is downloaded, or made here
+        return any(
+            link.item.startswith(prefix)
+            and self.certain(conditions := (*target.conditions, *link.conditions))
+            and not any(name.lower() in condition.text.lower() for condition in conditions)
+            for target in targets
+            for link in target.links
+            if link.how == "link"
         )
 
     def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:
