@@ -22,8 +22,6 @@ Not reported
     Bounds on packages whose version on the target is not known, and under a condition that does not hold there.
 """
 
-from collections.abc import Iterator
-
 from ...facts.manifest import Dependency
 from ...model.view import TargetView
 from ...model.workspace import Package
@@ -78,11 +76,12 @@ def unsatisfied_version(view: TargetView, package: Package):
                 )
                 break
         else:
-            if not here:
-                yield from _look_ahead(view, package, dependency)
+            if not here and (later := _find_later(view, package, dependency)) is not None:
+                seen.add(dependency.name)
+                yield later
 
 
-def _look_ahead(view: TargetView, package: Package, dependency: Dependency) -> Iterator[Upcoming]:
+def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
     """The first update of the distro whose version a bound does not allow."""
     for ahead in view.updates:
         version = ahead.target.version(dependency.name)
@@ -91,5 +90,5 @@ def _look_ahead(view: TargetView, package: Package, dependency: Dependency) -> I
                 data = {"version": version, "bound": f"{_SIGN[name]} {bound}", "horizon": ahead.name}
                 at = view.manifest_place(package, dependency)
                 found = Diagnostic(at, dependency.name, package.name, data, "upcoming")
-                yield Upcoming(found, dependency.name, ahead, (at.path, at.line))
-                return
+                return Upcoming(found, dependency.name, ahead, (at.path, at.line))
+    return None
