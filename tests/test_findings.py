@@ -165,24 +165,33 @@ def test_fingerprints_differ_with_what_they_identify(change):
     assert first.fingerprint != second.fingerprint
 
 
+# (rule, package, causes, doubts, severity when all come one after the other)
+REPEATS = [
+    ("removed-header", "p", (Together("late"),), (Doubt.LATE,), "warning"),
+    ("removed-header", "q", (Together("late"),), (Doubt.LATE,), "warning"),
+    ("removed-header", "p", (Together("late"),), (Doubt.EXAMPLE,), "note"),
+    ("removed-header", "p", (Together("late"),), (), "error"),
+    ("removed-header", "p", (Together("late"),), (Doubt.LATE,), "note"),
+    ("undeclared-package", "p", (Together("late"),), (Doubt.LATE,), "warning"),
+    ("removed-header", "p", (Together("other"),), (Doubt.LATE,), "warning"),
+    ("removed-header", "p", (Together("new"), Together("other")), (Doubt.LATE,), "note"),
+    ("removed-header", "p", (Together("new"),), (Doubt.LATE,), "note"),
+    ("removed-header", "p", (Together("late", everywhere=True),), (Doubt.LATE,), "warning"),
+    ("undeclared-package", "q", (Together("late", everywhere=True),), (Doubt.LATE,), "note"),
+    ("removed-header", "q", (), (Doubt.LATE,), "warning"),
+    ("removed-header", "q", (), (Doubt.LATE,), "warning"),
+]
+
+
 def test_repeats_are_notes():
-    few, once = Together("late", 2), Together("late", everywhere=True)
-    late, plain = (Doubt.LATE,), (Doubt.EXAMPLE,)
-    given = [
-        ("p", few, late), ("q", few, late), ("p", few, plain), ("p", few, late), ("p", few, ()), ("p", few, late),
-        ("p", Together("other"), late), ("p", once, late), ("q", once, late), ("q", None, late), ("q", None, late),
-    ]  # fmt: skip
     diagnostics = [
-        ("removed-header", hit(line=line, doubts=doubts, together=together)._replace(package=package))
-        for line, (package, together, doubts) in enumerate(given)
+        (rule, hit(line=line, doubts=doubts, together=together)._replace(package=package))
+        for line, (rule, package, together, doubts, _) in enumerate(REPEATS)
     ]
     lowered = lower_repeats(diagnostics, RULES)
-    severities = [RULES[name].severity_of(diagnostic) for name, diagnostic in lowered]
-    assert severities == [
-        "warning", "warning", "note", "warning", "error", "note", "warning", "warning", "note", "warning", "warning"
-    ]  # fmt: skip
+    assert [RULES[name].severity_of(diagnostic) for name, diagnostic in lowered] == [row[-1] for row in REPEATS]
     found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
-    assert [each.line for each in found if each.repeated] == [5, 8]
+    assert [each.line for each in found if each.repeated] == [4, 7, 8, 10]
 
 
 def test_a_fingerprint_does_not_depend_on_message_or_targets():

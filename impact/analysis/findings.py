@@ -47,17 +47,18 @@ def _never(fix: tuple[FixAction, ...], target: str) -> bool:
 
 
 def lower_repeats(yielded: Iterable[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
-    """What rules yield on one target, in order, with notes for the warnings that Together allows no more of."""
-    count: Counter[tuple[str, str, str]] = Counter()
+    """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
+    told: set[tuple[str, str, str]] = set()
     result = []
     for name, diagnostic in yielded:
-        together = diagnostic.together
-        if together is not None and rules[name].severity_of(diagnostic) == "warning":
-            key = name, "" if together.everywhere else diagnostic.package, together.kind
-            count[key] += 1
-            if count[key] > together.most:
-                doubts = (*diagnostic.doubts, Doubt.REPEATED)
-                diagnostic = diagnostic._replace(doubts=doubts)
+        if diagnostic.together and rules[name].severity_of(diagnostic) == "warning":
+            keys = {
+                ("", "", each.cause) if each.everywhere else (name, diagnostic.package, each.cause)
+                for each in diagnostic.together
+            }
+            if not keys.isdisjoint(told):
+                diagnostic = diagnostic._replace(doubts=(*diagnostic.doubts, Doubt.REPEATED))
+            told |= keys
         result.append((name, diagnostic))
     return result
 

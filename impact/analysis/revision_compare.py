@@ -10,6 +10,7 @@ from ...edges import files
 from ...edges.documents import DocumentError, load_yaml
 from ...edges.limits import limits
 from ..facts.extract import gather
+from ..model.discovery import REPOSITORY_LISTS
 from ..model.flow.file_selection import code_kinds
 from ..model.view import TargetView
 from ..model.workspace import link
@@ -19,7 +20,6 @@ from .result_cache import load_tracked_names
 if TYPE_CHECKING:
     from .session import OpenedWorkspace
 
-_PINNED = (".repos", ".rosinstall")
 
 
 class BaseError(TreeError):
@@ -37,7 +37,7 @@ def base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
     revisions: dict[str, str] = {}
     pinned: dict[str, str] = {}
     for item in base:
-        if item.endswith(_PINNED) and "=" not in item:
+        if item.endswith(REPOSITORY_LISTS) and "=" not in item:
             pinned.update(read_pinned(Path(item)))
         elif "=" in item:
             path, _, revision = item.partition("=")

@@ -71,15 +71,18 @@ class Discovered:
 
     packages: with a manifest, sorted by path. foreign: without. ignored: found, and left out as colcon is told to.
     duplicates: (name, path, path) of packages of one name, which colcon refuses to build. problems: configuration files
-    that could not be read.
+    that could not be read. lists_repositories: a file of vcstool or wstool names sources that are put beside these.
     """
 
-    def __init__(self, places: Iterable[PackagePlace], problems: Iterable[PathProblem] = ()):
+    def __init__(
+        self, places: Iterable[PackagePlace], problems: Iterable[PathProblem] = (), lists_repositories: bool = False
+    ):
         every = sorted(places, key=lambda place: place.path)
         self.packages = tuple(place for place in every if place.manifest_path and not place.ignored)
         self.foreign = tuple(place for place in every if not place.manifest_path and not place.ignored)
         self.ignored = tuple(place for place in every if place.ignored)
         self.problems = tuple(problems)
+        self.lists_repositories = lists_repositories
         first: dict[str, str] = {}
         duplicates = []
         for place in (*self.packages, *self.foreign):
@@ -113,6 +116,10 @@ class Discovered:
         return owner
 
 
+REPOSITORY_LISTS = (".repos", ".rosinstall")
+"""How files of vcstool and wstool end, which name repositories and their versions."""
+
+
 def discover(tree: Tree, gathered: ExtractedFacts) -> Discovered:
     """Finds the packages of a tree from its paths and the facts of its manifests.
 
@@ -130,8 +137,10 @@ class _Search:
         self.problems: list[PathProblem] = []
         self.unmatched: set[PathProblem] = set()
         self.files: dict[str, set[str]] = {}
+        self.lists_repositories = False
         for entry in tree.entries():
             folder, _, name = entry.path.rpartition("/")
+            self.lists_repositories = self.lists_repositories or name.endswith(REPOSITORY_LISTS)
             if name in _FILES or (name[:7].lower() == "package" and _VARIANT.match(name)):
                 self.files.setdefault(folder, set()).add(name)
         self.repositories = tree.repositories
@@ -190,7 +199,7 @@ class _Search:
                     ignored=self._ignored(place.name),
                 )
             )
-        return Discovered(found, self.problems)
+        return Discovered(found, self.problems, self.lists_repositories)
 
     def _above(self, folder: str, places: Iterable[str]) -> str | None:
         """The nearest of the places above the folder."""

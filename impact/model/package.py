@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...edges.memory import cached_method
+from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
@@ -262,18 +263,26 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     distros: tuple[tuple[str, DistroFile], ...] = ()
 
 
+BUILD_TOOLS = ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin")
+"""Build types that ROS packages declare as tools; `ament_python` is no package."""
+
+
 def build_type_of(manifest: Manifest, ros: int) -> str:
     """The build type that holds for a ROS generation: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..."""
     fallback = ""
+    here = Environment(ros_version=str(ros))
     for kind, condition in manifest.build_types:
-        text = condition.replace(" ", "").replace('"', "").replace("'", "")
-        if not text or f"$ROS_VERSION=={ros}" in text:
+        if not condition or holds(Condition("manifest", condition), here):
             return kind
         fallback = fallback or kind
     if fallback:
         return fallback
-    tools = {d.name for d in manifest.dependencies if d.kind == "buildtool"}
-    for kind in ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin"):
+    tools = {
+        d.name
+        for d in manifest.dependencies
+        if d.kind == "buildtool" and (not d.condition or holds(Condition("manifest", d.condition), here) is not False)
+    }
+    for kind in BUILD_TOOLS:
         if kind in tools:
             return kind.removesuffix("_auto")
     return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
@@ -408,6 +417,7 @@ class _Join:
         self._known: dict[str, KnownFile] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
+        self.interpreted: set[str] = set()
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
@@ -427,7 +437,7 @@ class _Join:
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
-        interpreted: set[str] = set()
+        interpreted = self.interpreted
         shells: list[str] = []
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
@@ -614,7 +624,10 @@ class _Join:
                         around = self.macros.asked(include.conditions, names)
                         stack.append((to, under + around if around else under))
 
-        for source, targets in roots.items():
+        # A header among the sources of a target is compiled with the sources that include it, and not for itself.
+        for source, targets in sorted(roots.items(), key=lambda root: is_header(root[0])):
+            if is_header(source) and source in reached:
+                continue
             inside = role_of_folder(self.inside(source))
             for target in targets:
                 role = "test" if target.kind == "test" or inside == "test" else "build"
@@ -623,7 +636,8 @@ class _Join:
                 ):
                     role = "test"
                 own = next((conditions for path, conditions in target.guarded if path == source), ())
-                walk(source, role, False, (target.name,), target.conditions + own)
+                names = () if is_header(source) else (target.name,)
+                walk(source, role, False, names, target.conditions + own)
         for header in self.installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
@@ -1111,7 +1125,23 @@ class _Join:
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
-        return self.role(path) or ("run" if path in self.started or self.is_installed(path) else "aside")
+        role = self.role(path)
+        if role == "test" and not self.is_run_as_test(path):
+            return "aside"
+        return role or ("run" if path in self.started or self.is_installed(path) else "aside")
+
+    def is_run_as_test(self, path: str) -> bool:
+        """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one."""
+        build = self.build
+        if self.build_type == "ament_python" or not build.files or path in self.started or self.is_installed(path):
+            return True
+        if build.unresolved or any(_MAY_TEST.search(u.name) for u in build.uses if u.kind == "command"):
+            return True
+        if posixpath.basename(path) in self.interpreted:
+            return True
+        run = [source for target in build.targets if target.kind == "test" for source in target.sources]
+        folders = [one if "." not in posixpath.basename(one) else posixpath.dirname(one) for one in run]
+        return any("$" in folder or path.startswith(f"{folder}/") for folder in folders)
 
     def start_scripts(self, files: dict[str, PythonFile], names: Container[str]) -> None:
         """Notes the scripts of these names, and the modules beside them that they import."""
@@ -1145,7 +1175,7 @@ class _Join:
                     folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
                 else:
                     single.update(posixpath.normpath(item) for item in rule.items)
-            if any("$" in item for item in (*single, *folders)):
+            if any("$" in item and not _BUILT.match(item) for item in (*single, *folders)):
                 folders.append(self.path)
             self._covered = single, tuple(folders)
         single, folders = self._covered
@@ -1154,6 +1184,11 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+# Commands that may run tests, besides those that the interpreter knows and those of linters.
+_MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
+_BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
 
 
 def _list_interpreted(facts: CMakeFile) -> Iterator[str]:

@@ -749,6 +749,12 @@ class TargetView:
             and not target.other_generation(n)  # nor does a package that cannot be had
         )  # fmt: skip
 
+    def brings_own_build(self, package: Package, wanted: str) -> bool:
+        """Whether something comes along that ROS releases as built with plain CMake or Meson, and that is called after
+        the library of a header or CMake package: it most likely installs what is wanted (`mrpt2`, `mrpt-maps`)."""
+        stem = re.split(r"[^a-z]", wanted.lower())[0]
+        return len(stem) > 2 and any(n.startswith(stem) and self._is_plain_build(n) for n in self.closure(package))
+
     def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
         platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
@@ -765,12 +771,16 @@ class TargetView:
         return [*self._opaque[package.name], *unread]
 
     def _is_unread_library(self, name: str) -> bool:
-        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson, and what it
-        installs is not stored."""
+        """Whether what a plain build installs is not stored."""
+        return self._is_plain_build(name) and self.offers.package(name) is None
+
+    @cached_method
+    def _is_plain_build(self, name: str) -> bool:
+        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson."""
         if name in self.workspace.packages or self.target.version(name) is None:
             return False
         types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
-        return not types.isdisjoint(("cmake", "meson")) and self.offers.package(name) is None
+        return not types.isdisjoint(("cmake", "meson"))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
@@ -983,7 +993,8 @@ class TargetView:
                 found.required
                 or (found.how == "catkin" and not found.quiet)
                 or (found.name == "PkgConfig" and self._requires_modules(package))
-                or self._is_called(package, found.name),
+                or self._is_called(package, found.name)
+                or (not found.required and self._is_linked(package, found.name)),
             )
             yield from self._parts_asked(found, testing, certain)
         if self.target.version("ros_environment") is not None:
@@ -1077,6 +1088,20 @@ class TargetView:
             name in commands.get(use.name, "").split() and "_FOUND" not in " ".join(c.text for c in use.conditions)
             for use in package.build.uses
             if use.kind == "command" and self.certain(use.conditions)
+        )
+
+    def _is_linked(self, package: Package, name: str) -> bool:
+        """Whether a target that a package defines is linked wherever it was looked for, found or not."""
+        targets, prefix = package.build.targets, f"{name}::"
+        if any(t.name.startswith(prefix) or t.name.lower() == name.lower() for t in targets):
+            return False  # it is downloaded, or made here
+        return any(
+            link.item.startswith(prefix)
+            and self.certain(conditions := (*target.conditions, *link.conditions))
+            and not any(name.lower() in condition.text.lower() for condition in conditions)
+            for target in targets
+            for link in target.links
+            if link.how == "link"
         )
 
     def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:

@@ -104,10 +104,11 @@ class Package:
 
 
 class FilesOutside:
-    """What files say that belong to no package."""
+    """What files say that belong to no package. lists_repositories: as Discovered has it."""
 
     def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
         self._gathered = gathered
+        self.lists_repositories = discovered.lists_repositories
         self._scripts = [path for path in gathered.paths("shell", "script") if discovered.owner(path) is None]
         self._containers = [path for path in gathered.paths("dockerfile", "ci") if not is_vendored(path)]
 
@@ -115,7 +116,7 @@ class FilesOutside:
     def identity(self) -> bytes:
         """Differs whenever one of them does."""
         ids = [(path, self._gathered.ids[path]) for path in (*self._scripts, *self._containers)]
-        return repr(ids).encode("utf-8", "backslashreplace")
+        return repr((ids, self.lists_repositories)).encode("utf-8", "backslashreplace")
 
     @cached_property
     def distro_scripts(self) -> dict[str, DistroFile]:

@@ -43,12 +43,12 @@ from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
 from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import AT_RUN_TIME, EXPORTED, Doubt, Together, doubts_of_place, severity
+from .severity import Doubt, Together, doubts_of_place, severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 
 __all__ = [
-    "AT_RUN_TIME", "EXPORTED", "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert",
+    "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert",
     "Remove", "Replace", "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "all_rules", "doubts_of_place",
     "groups", "rate_upcoming", "rule", "severity",
 ]  # fmt: skip
@@ -65,7 +65,7 @@ class Diagnostic(NamedTuple):
     a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
     of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity, as
     severity() takes it.
-    severity: where the policy was asked already; else empty. together: with which others it is worth few warnings.
+    severity: where the policy was asked already; else empty. together: with which others it is worth one warning.
     fix: actions that repair it, see fix_actions.py; kept only when every target asked for yields the same. evidence:
     the change that it rests on, without targets; check.py adds how each target stands to it.
     """
@@ -79,7 +79,7 @@ class Diagnostic(NamedTuple):
     severity: str = ""
     fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
-    together: Together | None = None
+    together: tuple[Together, ...] = ()
 
     @property
     def fact(self) -> object:

@@ -91,19 +91,11 @@ def doubts_of_place(view: TargetView, role: str, conditions: Iterable[Condition]
     return tuple(doubts)
 
 
-AT_RUN_TIME = 1
-"""How many things that a package runs with and does not declare are worth a warning: launch files and modules are used
-one by one, and whoever declares the first looks for the others."""
-EXPORTED = 3
-"""How many things that a package does not hand on to dependants are worth a warning."""
-
-
 class Together(NamedTuple):
-    """What findings share that are worth only a few warnings together: lower_repeats() makes notes of the rest.
+    """What findings share that are worth one warning together: lower_repeats() makes notes of the rest.
 
-    kind: of the findings, within their rule. most: how many are worth a warning. everywhere: those of the whole
-    workspace count, and not those of one package."""
+    cause: of the findings, within their rule and package. everywhere: those of all rules and of the whole workspace
+    count together, since one thing outside it is the cause."""
 
-    kind: str
-    most: int = 1
+    cause: str
     everywhere: bool = False

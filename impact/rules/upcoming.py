@@ -1,9 +1,8 @@
 """Findings about what is there and will be gone: one treatment for all rules.
 
 What goes with the next sync breaks in the build farm already, and counts as if it were gone. What goes with a later
-update, or on the newest platform, is worth one warning for each thing that changes (a package or library, or a header
-of it), in the whole workspace: its first place by what breaks first. The rest are notes, and so is what only a distro
-further ahead lacks.
+update, or on the newest platform, is worth one warning for each package or library that changes, in the whole
+workspace: its first place by what breaks first. The rest are notes, and so is what only a distro further ahead lacks.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ if TYPE_CHECKING:
 
 
 class Upcoming(NamedTuple):
-    """A diagnostic of something that is still there. changed: what one warning is enough of. order: what breaks first
-    comes first."""
+    """A diagnostic of something that is still there. changed: the package or library that goes without it. order: what
+    breaks first comes first."""
 
     diagnostic: Diagnostic
     changed: str
@@ -42,6 +41,6 @@ def rate_upcoming(found: Iterable[Diagnostic | Upcoming]) -> Iterator[Diagnostic
         if not horizon.soon:
             late = Doubt.FAR if horizon.far else Doubt.UPCOMING
             diagnostic = diagnostic._replace(
-                doubts=(*diagnostic.doubts, late), together=Together(changed, everywhere=True)
+                doubts=(*diagnostic.doubts, late), together=(Together(f"{changed} of {horizon.name}", True),)
             )
         yield diagnostic

@@ -276,6 +276,9 @@ GUARDED = [
     ),
     ("if(A)\nset(S x.cpp)\nelseif(B)\nset(S x.cpp y.cpp)\nendif()\nadd_library(t ${S})", {"y.cpp": "!A & B"}),
     ("add_library(t a.cpp)\nif(A)\ntarget_sources(t PRIVATE x.cpp)\nendif()", {"x.cpp": "A"}),
+    ("set(S a.cpp x.cpp)\nif(NOT A)\nlist(REMOVE_ITEM S x.cpp)\nendif()\nadd_library(t ${S})", {"x.cpp": "!NOT A"}),
+    ("set(S a.cpp)\nif(A)\nset(S a.cpp x.cpp)\nendif()\nadd_library(t ${S})", {"x.cpp": "A"}),
+    ("set(S a.cpp x.cpp)\nif(A)\nlist(REMOVE_ITEM S x.cpp)\nelse()\nset(S a.cpp)\nendif()\nadd_library(t ${S})", {}),
     ("add_library(t a.cpp)\nif(A)\ntarget_sources(t PRIVATE a.cpp)\nendif()", {}),
     ("if(A)\nadd_library(t a.cpp)\nendif()", {}),
 ]

@@ -33,7 +33,7 @@ def told(tmp_path):
         file.write_text(text)
         options = Options(targets=targets, select=("removed-parameter",), cache=tmp_path / "cache", jobs=1)
         found = [f for f in check(tmp_path, options).findings if f.rule == "removed-parameter"]
-        assert {f.severity for f in found} <= {"warning"}
+        assert [f.severity for f in found[:1]] in ([], ["warning"])
         return [(f.line, " ".join(t.partition("@")[0] for t in f.targets), f.message, f.help) for f in found]
 
     return run
@@ -129,7 +129,5 @@ def test_a_few_are_told_one_by_one(told):
     ]
 
 
-def test_many_of_one_owner_are_told_together(told):
-    ((line, _, message, _),) = told(WHEELS, "humble")
-    assert line == 6
-    assert message.startswith("`speed_scaling.command_interface` and 4 more parameters of this file are not declared")
+def test_the_first_of_one_owner_is_the_warning(told):
+    assert [line for line, *_ in told(WHEELS, "humble")] == [6, 6, 6, 8, 9]

@@ -79,6 +79,8 @@ class _TooMuch(Exception):
 SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 # Commands that read sources and compile nothing.
 _NO_BUILDER = re.compile(r"lint|format|tidy|check|uncrustify|style|doc|translation|coverage|install|propert|package")
+# Commands of other packages that call find_package() for their arguments.
+_FINDER = re.compile(r"find\w*_packages?(?:_|\Z)")
 
 # Commands that do something else, or stop, where an argument is missing.
 _NEEDS_VALUES = frozenset(
@@ -332,7 +334,16 @@ class Interpreter:
         if name not in BUILTIN_COMMANDS:
             self.use_command(call)
             self.pass_sources(call, words)
+            self.pass_packages(call, words)
         return NORMAL
+
+    def pass_packages(self, call: CommandCall, words: list[Word]) -> None:
+        """Notes what is given to a command that nothing defines and that is called as one which finds packages."""
+        if _FINDER.search(call.name) and call.name not in MODULE_OF:
+            for item in words:
+                if not item.isupper():
+                    place, conditions = self.place(item.at), self.under(item)
+                    self.add_found(FoundPackage(str(item), "passed", place, conditions=conditions))
 
     def pass_sources(self, call: CommandCall, words: list[Word]) -> None:
         """Remembers the sources given to a command that nothing defines: it most likely builds them."""
@@ -434,7 +445,7 @@ class Interpreter:
             outcomes.insert(0, {})
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
-        self.merge_outcomes(outcomes)
+        self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else ())
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
             rest = structs.replace(own[0], negated=not own[0].negated, gate=self.at_gate(own[0]))
             self.conditions = merge(self.conditions, (rest,))
@@ -483,8 +494,9 @@ class Interpreter:
         del self.journal[mark:]
         return signal, changes
 
-    def merge_outcomes(self, outcomes) -> None:
-        """Leaves in each variable what the branches wrote, joined."""
+    def merge_outcomes(self, outcomes, untaken: tuple[Condition, ...] = ()) -> None:
+        """Leaves in each variable what the branches wrote, joined. untaken: what holds where the only branch is not
+        taken; what that branch takes out of a list is left under this."""
         touched: dict[tuple[int, str], dict[str, CMakeValue]] = {}
         for changes in outcomes:
             for key, (where, _) in changes.items():
@@ -495,6 +507,14 @@ class Interpreter:
                 # Where no branch has set it, a found package may have.
                 unknown = CMakeValue((word(f"${{{name}}}", self.here(), (), False),), False)
                 left = [value if value is not None else unknown for value in left]
+            whole, part = (left[0], left[-1]) if untaken and len(left) == 2 else (None, None)
+            if whole is not None and part is not None and set(part.words) < set(whole.words):
+                kept = set(part.words)
+                words = (
+                    item if item in kept else word(item, item.at, merge(item.conditions, untaken), item.sure)
+                    for item in whole.words
+                )
+                left[0] = CMakeValue(tuple(words), whole.sure, whole.defined)
             value = join(left)
             if value is not None:
                 self.spend(len(value.words) >> 5)

@@ -7,7 +7,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, Doubt, FixAction, Text, Upcoming, Value, doubts_of_place
+from ..rule import Diagnostic, Doubt, FixAction, Text, Together, Upcoming, Value, doubts_of_place
 
 UPSTREAM = "{upstream}[[ {version}]]"
 """The package or library that decides, in the version that the target has."""
@@ -60,6 +60,11 @@ def find_missing(view: TargetView, kind: str, name: str, packages: Iterable[str]
     return found if found.is_missing or found.state == "upcoming" else None
 
 
+def lacking_of(upstream: str) -> tuple[Together, ...]:
+    """What all have in common that a package of another version, or its absence, breaks."""
+    return (Together(f"version of {upstream}", everywhere=True),)
+
+
 def diagnose(
     found: Availability,
     at: object,
@@ -70,19 +75,21 @@ def diagnose(
     kind: str = "",
     data: dict[str, Value] | None = None,
     fix: tuple[FixAction, ...] = (),
-    changed: str = "",
     order: tuple = (),
 ) -> Diagnostic | Upcoming:
     """What is to be said of something that a use needs. doubts: about the place. kind, data: which text, and what it
-    names, where it is none of availability_texts(). changed, order: see Upcoming; by default the package, the place."""
+    names, where it is none of availability_texts(). order: see Upcoming; by default the place."""
     given = data_of(found) if data is None else data
     kind = kind or ("never" if found.form == "never" else found.state)
     all_doubts = (*doubts, found.sure or Doubt.INCOMPLETE)
-    diagnostic = Diagnostic(at, subject, package, given, kind, all_doubts, fix=fix, evidence=found.evidence)
+    diagnostic = Diagnostic(
+        at, subject, package, given, kind, all_doubts,
+        fix=fix, evidence=found.evidence, together=lacking_of(found.package),
+    )  # fmt: skip
     if found.state != "upcoming" or found.horizon is None:
         return diagnostic
     place = getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
-    return Upcoming(diagnostic, changed or found.package, found.horizon, order or place)
+    return Upcoming(diagnostic, found.package, found.horizon, order or place)
 
 
 def find_gone_package(
@@ -104,7 +111,10 @@ def find_gone_package(
             "upstream": upstream, "distro": view.target.distro, "replacement": view.successor(upstream),
             "last": last if found.state == "removed" and last != view.target.distro else "",
         }  # fmt: skip
-        yield Diagnostic(use.at, subject, package.name, data, "package", (*doubts_of_place(view, use.role), Doubt.LATE))
+        doubts = (*doubts_of_place(view, use.role), Doubt.LATE)
+        yield Diagnostic(
+            use.at, subject, package.name, data, "package", doubts, together=lacking_of(upstream)
+        )  # fmt: skip
 
 
 def is_of_another_distro(view: TargetView, path: str, files: Collection[str]) -> bool:

@@ -19,13 +19,12 @@ from .parameter_header import ParameterHeaders
 
 class HeaderLoss(NamedTuple):
     """What the first source that knows of a header tells of it. found: how the target stands to it; None where it
-    cannot be told. kind: of the text, where the state of that does not say it. changed: see Upcoming. ordered: places
-    in sources go before those in headers."""
+    cannot be told. kind: of the text, where the state of that does not say it. ordered: places in sources go before
+    those in headers."""
 
     found: Availability | None
     kind: str = ""
     fix: tuple[FixAction, ...] = ()
-    changed: str = ""
     ordered: bool = False
 
 
@@ -76,8 +75,7 @@ class IncludedHeaders:
         is_header_row = change is not None and change.kind.startswith("header")
         if change is not None and ahead is not None and is_header_row and view.active_on(ahead, include.conditions):
             fix = respell(view, package, include, change.new) if change.kind != "header-removed" else ()
-            changed = f"{change.package} {path}"
-            return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, changed=changed, ordered=True)
+            return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, ordered=True)
         found = view.header_availability(path)
         if found is not None and view.breaks_under(found, include.conditions):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)

@@ -40,6 +40,7 @@ from .diagnosis import (
     find_gone_package,
     find_missing,
     is_of_another_distro,
+    lacking_of,
 )  # fmt: skip
 
 
@@ -99,4 +100,7 @@ def _arguments(view: TargetView, package: str, use: ReferenceUse, path: str) -> 
         data = {"file": path, "name": name, "upstream": found.package, "version": found.version, "since": found.since}
         kind = "argument" if found.state == "removed" else "argument early"
         doubts = (*doubts_of_place(view, use.role), Doubt.LATE)
-        yield Diagnostic(use.at, f"{path} {name}", package, data, kind, doubts, evidence=found.evidence)
+        yield Diagnostic(
+            use.at, f"{path} {name}", package, data, kind, doubts,
+            evidence=found.evidence, together=lacking_of(found.package),
+        )  # fmt: skip

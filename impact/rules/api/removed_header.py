@@ -11,9 +11,9 @@ Why it breaks
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
     the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, and
-    for the first include of each header that goes with a later update or on the newest distro's platform; note for its
-    other includes, for examples, for installed headers that the package does not compile itself, and under other tests
-    of the code itself.
+    for the first use of each package or library that goes with a later update or on the newest distro's platform; note
+    for its other uses, for examples, for installed headers that the package does not compile itself, and under other
+    tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -55,7 +55,7 @@ def removed_header(view: TargetView, package: Package):
             if loss.found is not None:
                 yield diagnose(
                     loss.found, at, path, package.name, doubts,
-                    kind=loss.kind, fix=loss.fix, changed=loss.changed, order=order if loss.ordered else (),
+                    kind=loss.kind, fix=loss.fix, order=order if loss.ordered else (),
                 )  # fmt: skip
             continue
         if find_misspelt(view, package, path) is not None:
@@ -65,6 +65,6 @@ def removed_header(view: TargetView, package: Package):
         if fault is None:
             headers.skip(path)
         elif found is not None and found.state == "upcoming":
-            yield diagnose(found, at, path, package.name, doubts, changed=path.partition("/")[0], order=order)
+            yield diagnose(found, at, path, package.name, doubts, order=order)
         elif found is not None and not is_bridge(view, package):
             yield diagnose(found, at, path, package.name, doubts)

@@ -9,7 +9,7 @@ Why it matters
     Most nodes ignore what they do not declare, without a word: the robot runs with the default.
 
 Severity
-    warning.
+    warning for the first of a package; note for the others.
 
 Example
     progress_checker_plugin: "progress_checker"         # nav2_controller until Iron
@@ -23,15 +23,13 @@ Not reported
     and files in folders that are called after another distro; parameter files of ROS 1.
 """
 
-from ...model.undeclared_parameters import UndeclaredParameter, list_undeclared_parameters
+from ...model.undeclared_parameters import list_undeclared_parameters
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.evidence import of_offered
 from ..rule import Diagnostic, Text, rule
-from .diagnosis import is_of_another_distro
+from .diagnosis import is_of_another_distro, lacking_of
 
-_FEW = 3
-"""So many of one owner are reported one by one; of more the first is reported, and how many there are."""
 _HELP = "[[set `{replacement}`]]"
 
 
@@ -39,16 +37,8 @@ _HELP = "[[set `{replacement}`]]"
     severity="warning",
     texts={
         "removed": Text("the parameter `{subject}` is no longer declared by {upstream} {version}", _HELP),
-        "removed, many": Text(
-            "`{subject}` and {more} more parameters of this file are no longer declared by {upstream} {version}", _HELP
-        ),
         "not yet": Text(
             "the parameter `{subject}` is not declared by {upstream} {version}[[ (added in {since})]]", _HELP
-        ),
-        "not yet, many": Text(
-            "`{subject}` and {more} more parameters of this file are not declared by {upstream} {version}"
-            "[[ (added in {since})]]",
-            _HELP,
         ),
     },
 )
@@ -56,27 +46,17 @@ def removed_parameter(view: TargetView, package: Package):
     files = frozenset(package.digest.files)
     # What a reviewed row about a value says at the same place says more.
     explained = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "yaml"}
-    by_owner: dict[tuple[str, str, str, bool], list[UndeclaredParameter]] = {}
     for one in list_undeclared_parameters(view, package):
-        at = one.use.at
-        if (at.path, at.line) not in explained and not is_of_another_distro(view, at.path, files):
-            owner = one.use.plugin or one.use.node
-            by_owner.setdefault((at.path, owner, one.offered.package, one.is_gone), []).append(one)
-    for found in by_owner.values():
-        if len(found) <= _FEW:
-            yield from (_diagnose(package, one) for one in found)
-        else:
-            yield _diagnose(package, found[0], len(found) - 1)
-
-
-def _diagnose(package: Package, one: UndeclaredParameter, more: int = 0) -> Diagnostic:
-    offered = one.offered
-    data = {
-        "upstream": offered.package,
-        "version": offered.version,
-        "since": "" if one.is_gone else offered.first,
-        "replacement": one.instead,
-        "more": more,
-    }
-    kind = f"{'removed' if one.is_gone else 'not yet'}{', many' if more else ''}"
-    return Diagnostic(one.use.at, one.use.name, package.name, data, kind, evidence=of_offered(offered))
+        at, offered = one.use.at, one.offered
+        if (at.path, at.line) in explained or is_of_another_distro(view, at.path, files):
+            continue
+        data = {
+            "upstream": offered.package,
+            "version": offered.version,
+            "since": "" if one.is_gone else offered.first,
+            "replacement": one.instead,
+        }
+        yield Diagnostic(
+            at, one.use.name, package.name, data, "removed" if one.is_gone else "not yet",
+            evidence=of_offered(offered), together=lacking_of(offered.package),
+        )  # fmt: skip

@@ -33,7 +33,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
 from ..python_files import Refused, report_refused
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
 
 
 @rule(
@@ -53,7 +53,9 @@ def undefined_name(view: TargetView):
             if use.module or not _is_of_python2(name):
                 doubts = (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
                 kind = "imported" if use.module else "module" if "." in name else "undefined"
-                yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts)
+                # Whoever looks at the first in a file sees the others.
+                together = (Together(use.at.path),)
+                yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
 
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):

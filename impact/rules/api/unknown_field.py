@@ -88,7 +88,7 @@ def _list_members(
             data = {**data_of(found), "interface": name}
             kind = f"field {found.state}"
             subject = ".".join((*use.section.split(".")[1:], use.member))
-            yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data, changed=name)
+            yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data)
 
 
 def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:

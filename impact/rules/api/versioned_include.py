@@ -52,5 +52,5 @@ def versioned_include(view: TargetView, package: Package):
         }
         one = Diagnostic(include.at, path, package.name, data, "other", doubts)
         if folder.there:
-            one = one._replace(kind="there", doubts=(*doubts, Doubt.DISTURBS), together=Together(path))
+            one = one._replace(kind="there", doubts=(*doubts, Doubt.DISTURBS), together=(Together(path),))
         yield one

@@ -25,7 +25,7 @@ Not reported
 
 from ...model.view import TargetView, weight
 from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..rule import Diagnostic, Text, Together, rule
 from .clean_machine import doubts_of_chance, is_chance
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
@@ -52,4 +52,5 @@ def dependency_by_chance(view: TargetView, package: Package):
                 {**describe_need(package, first), "sources": sources},
                 doubts=doubts_of_chance(view, package, first),
                 fix=declare_need(view, package, first, name),
+                together=(Together("by chance"),),
             )

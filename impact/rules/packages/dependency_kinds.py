@@ -7,6 +7,7 @@ from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
 from ..rule import Declare, Remove
+from .clean_machine import TEST_HEADERS
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
 _FOR_BUILD = frozenset({"build", "buildtool"})
@@ -60,7 +61,8 @@ def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
     if need.role == "build" and need.how in ("find_package", "component", "include"):
         if not kinds & _FOR_BUILD:
             return "build", _FOR_BUILD
-        if need.public and need.how == "include" and not kinds & {"build_export", "exec"}:
+        tests = need.subject.startswith(TEST_HEADERS)  # whoever includes what helps in tests makes tests
+        if need.public and need.how == "include" and not tests and not kinds & {"build_export", "exec"}:
             return "dependants", _FOR_DEPENDANTS
     elif need.role == "run" and need.how in ("import", "launch") and not kinds & FOR_RUN:
         return "run", FOR_RUN

@@ -24,7 +24,7 @@ import re
 
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind
 
 
@@ -98,7 +98,8 @@ def _list_handed_on(view: TargetView, package, declared, bare, need, seen):
     data = {"declared": name, "header": need.subject, "tag": tag}
     fix = fix_kind(view, package, right, "depend", declared[right])
     at = view.manifest_place(package, place)
-    yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix)
+    together = (Together(f"`{name}` without headers", everywhere=True),)
+    yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix, together=together)
 
 
 def _same_library(installed: str, stem: str) -> bool:

@@ -30,11 +30,12 @@ from ...model.cmake.links import exported_targets, passed_on_package, public_lin
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import EXPORTED, Diagnostic, Doubt, Text, Together, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
+_ONCE = (Together("not exported"),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 
@@ -88,11 +89,9 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
-                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,))
+                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=_ONCE)
                 continue
-            loaded = link.how == "ament" and is_only_loaded(view, package)
-            few = Together("passed on by plugins", 1) if loaded else Together("passed on", EXPORTED)
-            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=few)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=_ONCE)
 
 
 def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
@@ -116,7 +115,7 @@ def _comes_with_client_library(view: TargetView, name: str) -> bool:
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
     """Packages that installed headers include."""
     links = not ament.hows.isdisjoint(("ament_export_libraries", "ament_export_targets"))
-    needed = links or package.name in view.workspace.includers
+    needed, loaded = links or package.name in view.workspace.includers, is_only_loaded(view, package)
     found = {f.name for f in package.build.found}
     for need in view.weighed(package):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, ament.found):
@@ -128,10 +127,10 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
         apart = overlaid or not shares_one_folder(view)
-        missed = apart and needed and not _comes_with_client_library(view, name)
+        missed = apart and needed and not loaded and not _comes_with_client_library(view, name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
-        few = Together("included", EXPORTED)
-        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts, together=few)
+        data = {"header": need.subject}
+        yield Diagnostic(need.at, name, package.name, data, "include", doubts, together=_ONCE)
 
 
 def _list_of_messages(view: TargetView, package):
@@ -147,4 +146,4 @@ def _list_of_messages(view: TargetView, package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
                 reach |= {name}
-                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,))
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,), together=_ONCE)

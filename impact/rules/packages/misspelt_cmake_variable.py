@@ -28,7 +28,7 @@ from ...model.misspelling import is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ..rule import Diagnostic, Doubt, Replace, Text, Together, rule
 
 _SUFFIXES = (
     "_INCLUDE_DIRS",
@@ -119,4 +119,5 @@ def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Di
     new = f"${{{variable}}}"
     fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", new),)
     data = {"found": found, "variable": variable, "replacement": new}
-    return Diagnostic(use.at, use.name, package.name, data, kind, (Doubt.INCOMPLETE,), fix=fix)
+    together = (Together(found),)
+    return Diagnostic(use.at, use.name, package.name, data, kind, (Doubt.INCOMPLETE,), fix=fix, together=together)

@@ -38,7 +38,7 @@ from ...facts.condition import Condition
 from ...model.cmake.build import At, BuildTarget, for_tests
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
 
@@ -179,7 +179,9 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         path = posixpath.join(owner.path, name)
         known = owner.build.files and not owner.build.unresolved
         if known and is_absent(view, owner, path) and not _is_renamed(owner, name):
-            yield Diagnostic(use.at, name, package.name, {"by": owner.name}, "opened", (Doubt.DISTURBS,))
+            together = (Together(f"no {name} in {owner.name}", everywhere=True),)
+            data = {"by": owner.name}
+            yield Diagnostic(use.at, name, package.name, data, "opened", (Doubt.DISTURBS,), together=together)
 
 
 def _is_renamed(owner: Package, name: str) -> bool:

@@ -35,13 +35,19 @@ Not reported
 
 from ...model.view import TargetView, weight
 from ...model.workspace import Package
-from ..rule import AT_RUN_TIME, Diagnostic, Text, Together, rule, severity
+from ..rule import Diagnostic, Doubt, Text, Together, rule, severity
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 
 @rule(
-    texts=Text("{use}, and nothing that `{package}` declares brings `{subject}`", DECLARE),
+    texts={
+        "": Text("{use}, and nothing that `{package}` declares brings `{subject}`", DECLARE),
+        "condition": Text(
+            "{use}, and `{package}` declares `{subject}` under `{condition}` alone",
+            "declare it without the condition, or use it under the same one",
+        ),
+    },
 )
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
@@ -51,13 +57,18 @@ def undeclared_package(view: TargetView, package: Package):
     firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
-        at_run_time = first.how not in (*ASKED, "include")
+        # Launch files and modules are used one by one, and whoever declares the first looks for the others.
+        at_run_time = () if first.how in (*ASKED, "include") else (Together("run"),)
+        condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
+        if condition and "$ROS_" not in condition:
+            doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable
         yield Diagnostic(
             first.at,
             name,
             package.name,
-            describe_need(package, first),
-            doubts=doubts,
-            fix=declare_need(view, package, first, name) if severity(*doubts) != "note" else (),
-            together=Together("run", AT_RUN_TIME) if at_run_time else None,
+            {**describe_need(package, first), "condition": condition},
+            "condition" if condition else "",
+            doubts,
+            fix=declare_need(view, package, first, name) if severity(*doubts) != "note" and not condition else (),
+            together=at_run_time,
         )

@@ -23,9 +23,10 @@ Not reported
 
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind, list_wrong_kinds
 
+_ONCE = (Together("not handed on"),)
 _AS_DEPEND = "declare it as `<{tag}>`"
 
 
@@ -45,7 +46,7 @@ def unexported_dependency(view: TargetView, package: Package):
         if lacking == "dependants":
             data = {"header": need.subject, "tag": _tag(package)}
             fix = fix_kind(view, package, name, "depend", kinds)
-            yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix)
+            yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix, together=_ONCE)
 
 
 def _tag(package: Package) -> str:
@@ -77,4 +78,4 @@ def _list_linked(view: TargetView, package: Package):
         data = {"library": item, "tag": _tag(package)}
         fix = fix_kind(view, package, name, "depend", kinds)
         at = view.manifest_place(package, place)
-        yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix)
+        yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix, together=_ONCE)

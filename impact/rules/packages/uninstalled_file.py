@@ -29,7 +29,7 @@ from collections.abc import Iterator
 from ...model.cmake.build import At
 from ...model.package import role_of_folder
 from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .install_rules import is_installed, list_installing, list_places, list_references
 
 
@@ -68,6 +68,7 @@ def uninstalled_file(view: TargetView):
             yield from _list_scripts(package, installs, used.get("executable", set()))
 
 
+_ONCE = (Together("not installed"),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
@@ -105,7 +106,7 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
         at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         data = {"file": name, "share": share}
-        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,))
+        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_ONCE)
 
 
 def _list_below(package, folder: str) -> list[str]:
@@ -153,4 +154,4 @@ def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
             kind = "script" if name in scripts else "beside"
-            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,))
+            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)

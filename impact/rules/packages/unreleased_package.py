@@ -8,8 +8,9 @@ Why it breaks
     Nothing can install the package there: `rosdep install` fails, find_package fails, the node does not start.
 
 Severity
-    error when CMake or sources use the package without a condition; warning otherwise, since people also build
-    dependencies from source in an underlay (name it in `[workspace] underlays`, `repos` or `private`).
+    error when CMake or sources use the package without a condition; warning otherwise, and where a .repos or
+    .rosinstall file of the workspace may bring it, since people also build dependencies from source in an underlay
+    (name it in `[workspace] underlays`, `repos` or `private`).
 
 Example
     <depend>moveit_plugins</depend>             # on a distro where MoveIt is not released
@@ -38,6 +39,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
 )
 def unreleased_package(view: TargetView):
     target = view.target
+    beside = view.underlaid or view.workspace.outside.lists_repositories
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:
         seen = set()
@@ -63,5 +65,5 @@ def unreleased_package(view: TargetView):
                 package.name,
                 {"distro": target.distro, "last": last},
                 kind="later" if last == target.distro else "never",
-                doubts=() if used and not view.underlaid else (Doubt.INCOMPLETE,),
+                doubts=() if used and not beside else (Doubt.INCOMPLETE,),
             )

@@ -10,8 +10,9 @@ Why it breaks
 
 Severity
     error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
-    repository; warning for unknown names in the form of a key (`python3-x`, `libx-dev`, `x-pip`), and for a name `x` if
-    exactly one package or key such as `x_vendor` or `libx-dev` exists.
+    repository; warning for unknown names that nothing in the package uses or that have the form of a key (`python3-x`,
+    `libx-dev`, `x-pip`, `x_1.2`), and for a name `x` if exactly one package or key such as `x_vendor` or `libx-dev`
+    exists.
 
 Example
     <depend>Eigen3</depend>
@@ -29,9 +30,11 @@ from bisect import bisect_left
 from functools import lru_cache
 
 from ...model.misspelling import is_slip
+from ...model.package import BUILD_TOOLS
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
+from .used_names import list_used_names, shows_uses, stands_in_cmake
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"
 
@@ -45,6 +48,11 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "`{subject}` is neither a package nor a rosdep key, but {packages} are packages",
             "declare the packages that are used",
         ),
+        "unused": Text(
+            "`{subject}` is not a public package or rosdep key, and nothing in `{package}` uses it",
+            "remove it, or correct the name",
+        ),
+        "build type": Text("`{subject}` is a build type, not a package or rosdep key", "declare it as build_type only"),
         "unknown": Text(
             "`{subject}` is not a public package or rosdep key",
             "if it is your own, add it to `[workspace] private` in rosimpact.toml",
@@ -81,12 +89,23 @@ def unresolvable_key(view: TargetView, package: Package):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
-            # Names of this form are keys, which nobody else calls a package.
-            doubt = Doubt.AMBIGUOUS if _KEY.fullmatch(name) else Doubt.PRIVATE
-            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(doubt,))
+            yield _diagnose_unknown(view, package, at, name)
 
 
-_KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip")
+# How keys are called, and packages are not: names with dots, and those of packages of Debian or pip.
+_KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip|\w+\.[\w.+-]+")
+
+
+def _diagnose_unknown(view: TargetView, package: Package, at, name: str) -> Diagnostic:
+    """A name that nobody knows in public. Those of private packages are used by whoever declares them."""
+    if name in BUILD_TOOLS:
+        return Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
+    if _KEY.fullmatch(name):
+        return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.AMBIGUOUS,))
+    hidden = package.build.unresolved or not shows_uses(package)
+    if hidden or stands_in_cmake(package, name) or name in list_used_names(view, package):
+        return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
+    return Diagnostic(at, name, package.name, kind="unused", doubts=(Doubt.AMBIGUOUS,))
 
 
 def _find_namesake(view: TargetView, name: str) -> str:

@@ -23,6 +23,7 @@ Not reported
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Text, rule
+from .used_names import list_used_names, shows_uses
 
 # How names of packages begin or end that are used by what is not read: build tools, programs that people start, and
 # what generated code needs.
@@ -54,30 +55,13 @@ _SILENT = (
     ),
 )
 def unused_dependency(view: TargetView, package: Package):
-    if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
+    if not shows_uses(package):
         return
-    if not package.digest.includes and not package.digest.imports and not package.digest.references:
-        return
-    used = {p.name for need in view.needs(package) for p in need.providers}
+    used = list_used_names(view, package)
     debian = {p.package for need in view.needs(package) for p in need.providers}
-    used.update(dep for g in package.build.generated for dep, _ in g.dependencies)
-    used.update(e.item for e in package.build.exports)
-    used.update(
-        f.type.split("/")[0] for i in package.digest.interfaces for s in i.definition.sections for f in s.fields
-    )
     found = {f.name for f in package.build.found}
-    included = {i.path.split("/", 1)[0] for i in package.digest.includes} | {
-        i.module.split(".")[0] for i in package.digest.imports
-    }
     for name, kinds in view.declared(package).items():
-        if (
-            name in used
-            or name in included
-            or name in package.digest.named
-            or not kinds & {"build", "exec"}
-            or name.startswith(_SILENT)
-            or name.endswith(_SILENT)
-        ):
+        if name in used or not kinds & {"build", "exec"} or name.startswith(_SILENT) or name.endswith(_SILENT):
             continue
         if (
             name in found

@@ -76,7 +76,7 @@ def missing_include(view: TargetView):
                 {"name": need.name, "by": lost.by, "version": lost.version, "horizon": horizon},
                 kind="dropped" if lost.once else "never",
                 doubts=(Doubt.UPCOMING if sure and not lost.now else doubt,),
-                together=Together(lost.by, everywhere=True) if not lost.now else None,
+                together=(Together(f"{lost.by} of {horizon}", True),) if not lost.now else (),
                 fix=_include(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
 

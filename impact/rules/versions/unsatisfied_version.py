@@ -9,7 +9,8 @@ Why it breaks
     build goes on and fails later, in the compiler or at run time.
 
 Severity
-    error where the target's release or library breaks the bound; warning where a package of the workspace itself does.
+    error where the target's release or library, or that of the next sync, breaks the bound; warning where a package of
+    the workspace itself does, or a later update of the distro.
 
 Example
     <depend version_gte="2.9.0">moveit_core</depend>     # the robot, humble, has 2.5.9
@@ -21,10 +22,11 @@ Not reported
     Bounds on packages whose version on the target is not known, and under a condition that does not hold there.
 """
 
+from ...facts.manifest import Dependency
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import compare
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Upcoming, rule
 
 _HOLDS = {
     "version_lt": lambda c: c < 0,
@@ -37,10 +39,15 @@ _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte
 
 
 @rule(
-    texts=Text(
-        "package.xml asks for `{subject}` {bound}, but the target has {version}",
-        help="relax the bound, or update that target",
-    ),
+    texts={
+        "": Text(
+            "package.xml asks for `{subject}` {bound}, but the target has {version}",
+            "relax the bound, or update that target",
+        ),
+        "upcoming": Text(
+            "package.xml asks for `{subject}` {bound}, but {horizon} has {version}", "relax the bound, or ask for `>=`"
+        ),
+    },
 )
 def unsatisfied_version(view: TargetView, package: Package):
     seen = set()
@@ -68,3 +75,20 @@ def unsatisfied_version(view: TargetView, package: Package):
                     doubts=(Doubt.DISTURBS,) if here else (),
                 )
                 break
+        else:
+            if not here and (later := _find_later(view, package, dependency)) is not None:
+                seen.add(dependency.name)
+                yield later
+
+
+def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
+    """The first update of the distro whose version a bound does not allow."""
+    for ahead in view.updates:
+        version = ahead.target.version(dependency.name)
+        for name, bound in dependency.bounds if version else ():
+            if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
+                data = {"version": version, "bound": f"{_SIGN[name]} {bound}", "horizon": ahead.name}
+                at = view.manifest_place(package, dependency)
+                found = Diagnostic(at, dependency.name, package.name, data, "upcoming")
+                return Upcoming(found, dependency.name, ahead, (at.path, at.line))
+    return None

@@ -1,0 +1,38 @@
+"""What a package uses by name, as the rules on what it declares in vain ask for it."""
+
+from ...model.view import TargetView
+from ...model.workspace import Package
+
+
+def shows_uses(package: Package) -> bool:
+    """Whether the files of a package tell what it uses: it is no metapackage, and has code or launch files."""
+    digest = package.digest
+    if package.manifest.metapackage or (package.build_type == "ament_python" and not digest.imports):
+        return False
+    return bool(digest.includes or digest.imports or digest.references)
+
+
+def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
+    """Names of packages and keys that something in a package means: includes, imports, launch files, interfaces,
+    exports, commands of CMake, or words of YAML and robot descriptions."""
+    digest, build = package.digest, package.build
+    return frozenset((
+        *(provider.name for need in view.needs(package) for provider in need.providers),
+        *(name for made in build.generated for name, _ in made.dependencies),
+        *(export.item for export in build.exports),
+        *(f.type.split("/")[0] for i in digest.interfaces for s in i.definition.sections for f in s.fields),
+        *(include.path.split("/", 1)[0] for include in digest.includes),
+        *(item.module.split(".")[0] for item in digest.imports),
+        *(use.reference.package for use in digest.references),
+        *digest.named,
+    ))  # fmt: skip
+
+
+def stands_in_cmake(package: Package, name: str) -> bool:
+    """Whether CMake looks for a name, links something called like it, or asks a variable that begins with it."""
+    build = package.build
+    return (
+        any(name == found.name for found in build.found)
+        or any(name in link.item for target in build.targets for link in target.links)
+        or any(use.name.startswith(name) for use in build.uses)
+    )
