@@ -35,6 +35,7 @@ from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .macros import Macros
+from .python.undefined import PythonOffer, list_undefined, list_undefined_functions, offer_python
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
@@ -182,7 +183,7 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter that is set for a node or plugin of another package, see settings.py, and that some version of that
-    package does not declare. role: as in ImportUse."""
+    package does not declare. role: as in ImportUse. value: as text, empty where it is not told."""
 
     name: str
     package: str
@@ -191,6 +192,7 @@ class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     others: tuple[str, ...]
     at: At
     role: str
+    value: str = ""
 
 
 class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -257,6 +259,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     settings: tuple[SettingUse, ...] = ()
     # Names that neither the Python file itself nor the module of the package that it imports them from defines.
     undefined: tuple[ImportUse, ...] = ()
+    # What Python code of other packages can import from it.
+    python_offer: PythonOffer = PythonOffer()
     # Sources, each with another one that defines a function which it seems to use, and the function.
     own_calls: tuple[tuple[str, str, str], ...] = ()
     # Files that name folders of distros.
@@ -495,7 +499,6 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        from .python.undefined import list_undefined, list_undefined_functions
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -553,6 +556,7 @@ class _Join:
                     *list_undefined_functions(python, setup),
                 )
             ),
+            python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
@@ -803,8 +807,16 @@ class _Join:
                     yield self.setting(path, found)
 
     def setting(self, path: str, found: Setting) -> SettingUse:
-        at = At(path, found.line)
-        return SettingUse(found.name, found.package, found.plugin, found.node, found.others, at, self.python_role(path))
+        return SettingUse(
+            found.name,
+            found.package,
+            found.plugin,
+            found.node,
+            found.others,
+            At(path, found.line),
+            self.python_role(path),
+            "" if found.value is None else str(found.value),
+        )
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
@@ -1120,6 +1132,15 @@ class _Join:
                 plain = "python" in facts.interpreter and "python3" not in facts.interpreter
                 syntax.append(SyntaxUse(minor, what, At(path, line), role, plain))
         return imports, names, syntax, modules
+
+    def python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
+        """Where Python packages may lie that others can import once the package is installed."""
+        roots = {posixpath.join(self.path, folder, self.name) for folder in ("", "src")}
+        for path, file in setup:
+            if posixpath.dirname(path) == self.path:
+                tops = (name.partition(".")[0] for name in file.packages if name.isidentifier())
+                roots.update(file.places_of(self.path, top)[0].removesuffix(".py") for top in tops)
+        return roots
 
     def python_role(self, path: str) -> str:
         inside = self.inside(path)

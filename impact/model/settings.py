@@ -22,7 +22,7 @@ class Setting(NamedTuple):
     """A value that is set. name: below its owner, with dots. package: whose node or plugin it is for; empty where only
     the node's name is known. plugin: the class as written, empty for what is a node's. node: the program where the
     package is known and it is no plugin's, else the node's name. others: packages of plugins that the same node loads.
-    """
+    value: as read, None where that is not told plainly."""
 
     name: str
     package: str
@@ -30,6 +30,7 @@ class Setting(NamedTuple):
     node: str
     line: int
     others: tuple[str, ...] = ()
+    value: object = None
 
 
 class NamedNode(NamedTuple):
@@ -82,13 +83,13 @@ def _of_node(
         class_, name = (plugins[owner], key[len(owner) :]) if owner is not None else (controllers.get(node, ""), key)
         if class_:
             if _package(class_) in losers:
-                yield Setting(".".join(name), _package(class_), class_, node, entry.line, others)
+                yield Setting(".".join(name), _package(class_), class_, node, entry.line, others, entry.value)
         elif node and "*" not in node:
             known = named(node, losers)
             if known is not None and known.package not in losers:
                 continue  # another node of that name
             package, program = (known.package, known.program) if known is not None else ("", node)
-            yield Setting(".".join(name), package, "", program, entry.line, others)
+            yield Setting(".".join(name), package, "", program, entry.line, others, entry.value)
 
 
 def _is_class(value: object) -> bool:
@@ -110,7 +111,9 @@ def in_launch(file: LaunchFile, changing: Changing) -> Iterator[Setting]:
         for child in action.children:
             name = (plain(child.get("name")) or "").lstrip("~/") if child.kind == "parameter" else ""
             if package in changing.get(last_part(name), ()):
-                yield Setting(name.replace("/", "."), package, plugin, "" if plugin else program, child.line)
+                program = "" if plugin else program
+                value = plain(child.get("value"))
+                yield Setting(name.replace("/", "."), package, plugin, program, child.line, value=value)
 
 
 def named_in(file: LaunchFile) -> Iterator[NamedNode]:

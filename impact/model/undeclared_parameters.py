@@ -32,7 +32,8 @@ class UndeclaredParameter(NamedTuple):
 
 
 def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[UndeclaredParameter]:
-    """Those that files of a package set, beside which no other name of the same parameter is set."""
+    """Those that files of a package set, beside which no other name of the same parameter is set, and to another value
+    than that which holds without."""
     uses = [use for use in package.digest.settings if use.role == "run"]
     beside: dict[tuple[str, str, str], set[str]] = {}
     for use in uses:
@@ -43,7 +44,9 @@ def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[U
             continue
         others = renamed_parameters(offered.package).get(last_part(use.name), ())
         if beside[use.at.path, use.plugin, use.node].isdisjoint(others):
-            yield UndeclaredParameter(use, offered, _find_replacement(view, offered, others))
+            instead = _find_replacement(view, offered, others)
+            if not _is_default(view, use, offered, instead):
+                yield UndeclaredParameter(use, offered, instead)
 
 
 def _list_owners(view: TargetView, use: SettingUse) -> Iterator[PackageOffer]:
@@ -128,3 +131,24 @@ def _find_replacement(view: TargetView, offered: Offered, others: Iterable[str])
     offer = view.offers.package(offered.package)
     declared = {last_part(name) for name in offer.parameters} if offer is not None else set()
     return next((name for name in others if name in declared), "")
+
+
+def _is_default(view: TargetView, use: SettingUse, offered: Offered, instead: str) -> bool:
+    """Whether the value that is set is that which holds without: what the other name has by default, and where there is
+    no other name what the parameter itself had."""
+    offer = view.offers.package(offered.package)
+    if offer is None or offered.state == "absent" or not use.value:
+        return False
+    if instead:
+        default = next((value for name, value in offer.parameters.items() if last_part(name) == instead), None)
+    else:
+        default = offer.last_default(offered.name)
+    return default is not None and _plain(default) == _plain(use.value)
+
+
+def _plain(value: str) -> str | float:
+    text = value.strip("\"'").lower()
+    try:
+        return float(text)
+    except ValueError:
+        return text

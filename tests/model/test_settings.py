@@ -76,7 +76,9 @@ def test_a_launch_file_tells_whose_name_a_node_has():
         return NamedNode("base_driver", "driver", name) if (name, set(packages)) == ("base", {"base_driver"}) else None
 
     file = parameters(b"base:\n  ros__parameters:\n    old_rate: 1.0\n")
-    assert list(in_parameters(file, CHANGING, named)) == [Setting("old_rate", "base_driver", "", "driver", 3)]
+    assert list(in_parameters(file, CHANGING, named)) == [
+        Setting("old_rate", "base_driver", "", "driver", 3, value=1.0)
+    ]
 
 
 def test_a_name_that_another_package_has_is_not_guessed():

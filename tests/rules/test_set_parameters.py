@@ -107,8 +107,8 @@ GRACEFUL = """controller_server:
   ros__parameters:
     Follow:
       plugin: "nav2_graceful_controller::GracefulController"
-      motion_target_dist: 0.6
-      final_rotation: true
+      motion_target_dist: 0.8
+      final_rotation: false
 """
 WHEELS = """controller_manager:
   ros__parameters:

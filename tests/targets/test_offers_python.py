@@ -30,8 +30,10 @@ def offers(tmp_path):
             )
             one = Surface("arm", f"{number}.0.0", BuildSurface("arm", f"{number}.0.0"), python)
             packing.add("arm", one.version, (2,), RepositorySurfaces({"arm": one}), one.version in approximate)
+        drums = Surface("drums", "1.0.0", BuildSurface("drums", "1.0.0"), PythonSurface("drums", ()))  # without Python
+        packing.add("drums", drums.version, (2,), RepositorySurfaces({"drums": drums}), False)
         write(tmp_path / "surfaces.sqlite", packing.packed())
-        target = SimpleNamespace(ros=2, version={"arm": version}.get)
+        target = SimpleNamespace(ros=2, version={"arm": version, "drums": "1.0.0"}.get)
         return PythonOffers(Offers(target, Surfaces(tmp_path / "surfaces.sqlite")))
 
     return made
@@ -56,6 +58,18 @@ def test_a_name_that_comes_later_is_not_there_yet(offers):
 def test_what_an_older_distro_got_and_this_one_not_yet_is_not_called_gone(offers):
     lost = offers("2.0.0", "def f(): pass", "", "def f(): pass").ask(use("arm.f"), ["arm"])
     assert (lost.state, lost.since) == ("not yet", "3.0.0")
+
+
+def test_a_name_that_only_another_module_has_is_never_there(offers):
+    version = {"arm": "", "arm.joint": "class Joint: pass", "arm.link": "class Link: pass"}
+    of = offers("2.0.0", version, {**version, "arm.hand": ""}, version)
+    lost = of.ask(use("arm.link.Joint"), ["arm"])
+    assert (lost.state, lost.form, lost.sure) == ("not yet", "never", True)
+    # A package of the same module that has no Python is not asked.
+    assert of.ask(use("arm.link.Joint"), ["drums", "arm"]) == lost
+    assert of.ask(use("arm.joint.Joint"), ["arm"]) is None
+    open_module = {**version, "arm.link": "from elsewhere import *"}
+    assert offers("2.0.0", open_module, open_module, version).ask(use("arm.link.Joint"), ["arm"]) is None
 
 
 @pytest.mark.parametrize("name", ["arm.always", "arm.never", "other.f"])

@@ -65,6 +65,9 @@ _NEEDED = {
     "TemplateStr": (14, "t-string"), "TypeAlias": (12, "type alias statement"), "Nonlocal": (0, "nonlocal"),
     "YieldFrom": (3, "yield from"),
 }  # fmt: skip
+# What can be subscripted since Python 3.9, and joined to other types by `|` since 3.10 (PEP 585, PEP 604).
+_GENERIC = frozenset(("dict", "frozenset", "list", "set", "tuple", "type"))
+_TYPES = _GENERIC | {"bool", "bytes", "complex", "float", "int", "object", "str"}
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
 _CHILDREN = child_fields(
@@ -103,8 +106,12 @@ class PythonReader(ObjectUses, SourceText):
         self.function = False
         self.conditions: tuple[Condition, ...] = ()
         self.consumed: set[int] = set()
+        # Whether annotations are not evaluated.
+        self.postponed = False
 
     def read(self, tree: ast.Module) -> None:
+        future = (node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "__future__")
+        self.postponed = any(alias.name == "annotations" for node in future for alias in node.names)
         self.block(tree.body)
         self.looked_up_by_functions()
 
@@ -473,7 +480,7 @@ class PythonReader(ObjectUses, SourceText):
         self.arguments(arguments)
         if node.returns is not None:
             self.need(0, "annotations", node)
-            self.visit(node.returns)
+            self.evaluated(node.returns)
         before = self.scope, self.function, self.defining, self.lazy, self.me
         self.defining = (self.scope, node.name)
         self.lazy = self.lazy or self.scope.parent is not None or node.name not in SURE_TO_RUN
@@ -507,7 +514,28 @@ class PythonReader(ObjectUses, SourceText):
             for argument in group:
                 if argument.annotation is not None:
                     self.need(0, "annotations", argument)
-                    self.visit(argument.annotation)
+                    self.evaluated(argument.annotation)
+
+    def evaluated(self, annotation: ast.expr) -> None:
+        """Visits an annotation. Where it is sure to be evaluated, what it needs is a need of the file."""
+        self.visit(annotation)
+        simple = isinstance(annotation, (ast.Name, ast.Attribute, ast.Constant))
+        if simple or self.postponed or self.function or self.conditions:
+            return
+        for node in ast.walk(annotation):
+            if isinstance(node, ast.Subscript) and self.is_type(node.value, _GENERIC):
+                self.need(9, f"annotation {ast.unparse(node.value)}[...]", node)
+            sides = (node.left, node.right) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitOr) else ()
+            if any(self.is_type(side, _TYPES) for side in sides):
+                self.need(10, "annotation with | between types", node)
+
+    def is_type(self, node: ast.expr, names: frozenset[str]) -> bool:
+        """Whether an expression is one of these types of Python itself, or None."""
+        if isinstance(node, ast.Constant):
+            return node.value is None
+        if not isinstance(node, ast.Name) or node.id not in names:
+            return False
+        return not any(node.id in scope.bound or node.id in scope.imports for scope in self.scope.chain)
 
     def parameters(self, arguments: ast.arguments) -> None:
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
@@ -557,7 +585,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         self.need(6, "variable annotations", node)
-        self.visit(node.annotation)
+        self.evaluated(node.annotation)
         if node.value is not None:
             self.visit(node.value)
             if isinstance(node.target, ast.Name):

@@ -29,7 +29,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of interfaces.
     words: see words_of(). unbound: names that nothing in the file binds, and methods, with a
     dot before, that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can
-    import from it; empty where that cannot be told.
+    import from it; empty where that cannot be told, and two spaces where there are none.
     """
 
     imports: tuple[Import, ...]
@@ -155,10 +155,10 @@ def extract(data: bytes) -> PythonFile:
         try:
             reader = PythonReader(parsed, text)
             # What was rewritten may have lost names that it binds.
-            reader.unbound, bound = (None if old else scope_names(parsed)) or (frozenset(), frozenset())
+            reader.unbound, bound = (None if old else scope_names(parsed)) or (frozenset(), None)
             reader.read(tree)
             if any("*" in item.names for item in reader.imports):
-                reader.unbound = bound = frozenset()
+                reader.unbound, bound = frozenset(), None
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.attributes(),
@@ -172,7 +172,7 @@ def extract(data: bytes) -> PythonFile:
                 words=words_of(data),
                 fields=reader.field_uses(reader.column),
                 unbound=() if old else reader.unbound_names(),
-                bound=f" {' '.join(sorted(bound))} " if bound else "",
+                bound="" if bound is None else f" {' '.join(sorted(bound))} ",
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

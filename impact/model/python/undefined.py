@@ -1,6 +1,6 @@
-"""Names that the Python files of a package use and that nothing defines: neither the file itself, nor the module of the
-package from which it imports them; modules of the package that are not there; and functions that entry points name and
-their modules lack."""
+"""Names that the Python files of a package use and that nothing defines: neither the file itself, nor the module from
+which it imports them, of the package itself or of another one of the workspace; modules that are not there; and
+functions that entry points name and their modules lack."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def list_undefined(
         for use in facts.unbound:
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
         for item in facts.imports:
-            if not item.level and modules.lacks(item.module):
+            if not item.level and (modules.lacks(item.module) or modules.is_meant_by(item)):
                 yield path, msgspec.structs.replace(item, module="", names=(item.module,))
                 continue
             module = modules.find(path, item) if item.names and "*" not in item.names else None
@@ -37,6 +37,47 @@ def list_undefined(
             for name in item.names if bound and module != path else ():
                 if f" {name} " not in bound and name not in others and not modules.may_be_built(name):
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
+
+
+class PythonOffer(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a package offers to Python code of others. modules: the names that each module binds, as PythonFile.bound.
+    built: names of modules that may come from other files."""
+
+    modules: dict[str, str] = {}
+    built: frozenset[str] = frozenset()
+
+    def list_lacking(self, module: str, names: Iterable[str]) -> Iterator[str]:
+        """The module itself, where there is none, or those of these names that it does not bind."""
+        head, *rest = module.split(".")
+        generated = not _GENERATED.isdisjoint(rest) or any(self._may_be_built(part) for part in rest)
+        if head not in self.modules or generated:
+            return
+        bound = self.modules.get(module)
+        if bound is None:
+            if not any(one.startswith(f"{module}.") for one in self.modules):
+                yield module
+            return
+        for name in names if bound else ():
+            there = f" {name} " in bound or f"{module}.{name}" in self.modules or name in _GENERATED or name == "*"
+            if not there and not self._may_be_built(name):
+                yield name
+
+    def _may_be_built(self, name: str) -> bool:
+        return name in self.built or _is_made(name, self.built)
+
+
+def offer_python(
+    files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str], roots: Collection[str]
+) -> PythonOffer:
+    """What others can import of a package. files, others, paths: as above. roots: the folders of its Python packages
+    that it installs."""
+    modules = {}
+    for path, facts in files.items():
+        stem = _stem_of(path)
+        root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
+        if root is not None and f"{root}/__init__.py" in files:
+            modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
+    return PythonOffer(modules, _Modules(files, others, paths).sources) if modules else PythonOffer()
 
 
 def list_undefined_functions(
@@ -60,11 +101,19 @@ _SHORTEST = 4
 """Letters of a name that others begin with by no chance."""
 
 
+def _is_made(name: str, sources: Iterable[str]) -> bool:
+    """Whether a module may be made by a program: it is called as such are, or begins as one of these sources is
+    called."""
+    if name.startswith("_") or name.endswith(_MADE):
+        return True
+    return any(len(one) >= _SHORTEST and name.startswith(one) for one in sources)
+
+
 class _Modules:
     """The modules of a package. files, others, paths: as above."""
 
-    def __init__(self, files: Collection[str], others: Collection[str], paths: Iterable[str]):
-        self._others, self._paths = others, paths
+    def __init__(self, files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]):
+        self._files, self._others, self._paths = files, others, paths
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name: dict[str, list[str]] = {}
         # Folders with an __init__.py that lie in none such, by their names.
@@ -76,24 +125,35 @@ class _Modules:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
-    def _built(self) -> set[str]:
-        named = {posixpath.basename(path).partition(".")[0] for path in self._paths if not path.endswith(".py")}
+    def _built(self) -> frozenset[str]:
         roots = tuple(f"{root}/" for several in self._roots.values() for root in several)
         inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
-        return named.union(name for name in self._others if name not in inside and name not in self._by_name)
+        return frozenset((*self.sources, *(o for o in self._others if o not in inside and o not in self._by_name)))
 
     @cached_property
-    def _sources(self) -> set[str]:
+    def sources(self) -> frozenset[str]:
         """What files with an ending, which modules may be made of, are called."""
         names = (posixpath.basename(path) for path in self._paths if not path.endswith(".py"))
-        return {name.partition(".")[0] for name in names if "." in name}
+        return frozenset(name.partition(".")[0] for name in names if "." in name)
 
     def may_be_built(self, name: str) -> bool:
         """Whether a module of this name may come from something else than Python: it is called like a file of another
         language, or begins as one is called."""
-        if name.startswith("_") or name in self._built or name.endswith(_MADE):
-            return True
-        return any(len(one) >= _SHORTEST and name.startswith(one) for one in self._sources)
+        return name in self._built or _is_made(name, self.sources)
+
+    def is_meant_by(self, item: Import) -> bool:
+        """Whether an import from a package of another name, all of whose names a module of this one at the same place
+        binds, seems to mean it."""
+        head, _, rest = item.module.partition(".")
+        if not rest or not item.names or head in self._others or head in sys.stdlib_module_names:
+            return False
+        for roots in self._roots.values():
+            for root in roots:
+                stem = f"{root}/{rest.replace('.', '/')}"
+                bound = next((f.bound for f in map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py")) if f), "")
+                if all(f" {name} " in bound for name in item.names):
+                    return True
+        return False
 
     def lacks(self, module: str) -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none."""
@@ -125,8 +185,8 @@ class _Modules:
             meant = self._meant(item.module)
             found = [one for one in near if _stem_of(one) in meant]
         else:  # of one word there are many modules elsewhere; the one beside a program comes first
-            beside = posixpath.join(posixpath.dirname(path), f"{ending}.py")
-            found = [beside] if list(near) == [beside] else []
+            meant = {posixpath.join(posixpath.dirname(path), ending), *self._meant(item.module)}
+            found = [one for one in near if len(near) == 1 and _stem_of(one) in meant]
         return found[0] if len(found) == 1 else None
 
 

@@ -19,8 +19,9 @@ Use instead
 
 Not reported
     Names that no version declares; names that the sources of the target's version, or of what is installed with it,
-    still mention; nodes and plugins of the workspace; names beside which the new one is set as well; tests, examples
-    and files in folders that are called after another distro; parameter files of ROS 1.
+    still mention; nodes and plugins of the workspace; names beside which the new one is set as well; values that hold
+    without being set, by the default of the new name or of the removed parameter; tests, examples and files in folders
+    that are called after another distro; parameter files of ROS 1.
 """
 
 from ...model.undeclared_parameters import list_undeclared_parameters

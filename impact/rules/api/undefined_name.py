@@ -2,9 +2,10 @@
 
 What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
-    imports from a module of the same package that does not exist or does not define the name; functions of entry
-    points that their module does not define; and builtins (`raw_input`, `unicode`) and dictionary methods
-    (`iteritems`) that only Python 2 has, where the target has Python 3.
+    imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
+    name, or from a package of an unknown name in place of its own; functions of entry points that their module does not
+    define; and builtins (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the
+    target has Python 3.
 
 Why it breaks
     Python raises a NameError, ImportError or AttributeError when it reaches the line.
@@ -22,7 +23,8 @@ Use instead
 
 Not reported
     Code inside a `try` that catches the error, or under a test of the Python version; files with a star import, or that
-    define names with `exec`, `globals()` and the like; imports from such modules; methods that the file itself defines.
+    define names with `exec`, `globals()` and the like; imports from such modules; modules that another package has as
+    well; methods that the file itself defines.
 """
 
 from collections.abc import Iterator
@@ -44,18 +46,22 @@ from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
             "`{subject}` is not defined in Python {version}[[ ({horizon})]]", "use the Python 3 equivalent"
         ),
         "module": Text("the package has no module `{subject}`", "correct the module path in the import"),
+        "module of another": Text("`{owner}` has no module `{subject}`", "correct the module path in the import"),
         "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
     },
 )
 def undefined_name(view: TargetView):
     for package in view:
         for use, name in _list_uses(view, package):
+            kind = "imported" if use.module else "module" if "." in name.lstrip(".") else "undefined"
+            if kind != "undefined" and _may_be_of_another(view, package, use.module or name):
+                continue
             if use.module or not _is_of_python2(name):
-                doubts = (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
-                kind = "imported" if use.module else "module" if "." in name else "undefined"
+                doubts = (*_doubts_of_import(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
                 # Whoever looks at the first in a file sees the others.
                 together = (Together(use.at.path),)
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
+        yield from _find_lacking_elsewhere(view, package)
 
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
@@ -71,10 +77,45 @@ def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, 
             yield use, use.names[0]
 
 
+def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
+    """Whether some package but this one may have a module, so that an import of it need not mean this one's."""
+    head = module.partition(".")[0]
+    if not head:
+        return False
+    if head != package.name and any(dependency.name == head for dependency in package.manifest.dependencies):
+        return True
+    return any(provider.name != package.name for provider in (*view.module(module), *view.providers.module(module)))
+
+
+def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Imports from modules of other packages of the workspace that do not exist or do not define the name."""
+    for use in package.digest.imports:
+        owners = view.workspace.modules.get(use.module.partition(".")[0], ())
+        if len(owners) != 1 or owners[0] == package.name or not view.certain(use.conditions):
+            continue
+        owner = view.workspace.packages[owners[0]]
+        if _may_be_of_another(view, owner, use.module):
+            continue
+        for name in owner.digest.python_offer.list_lacking(use.module, use.names):
+            kind = "module of another" if name == use.module else "imported"
+            data = {"module": use.module, "owner": owner.name}
+            doubts, together = _doubts_of_import(view, use), (Together(use.at.path),)
+            yield Diagnostic(use.at, name, package.name, data, kind, doubts, together=together)
+
+
+def _doubts_of_import(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:
+    return (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
+
+
+def _is_own(package: Package, kind: str, module: str) -> bool:
+    """Whether a module that is not there has, by its first name, to be one of the package."""
+    return kind != "module" or module.partition(".")[0] in package.digest.modules
+
+
 def _is_of_python2(name: str) -> bool:
     return name in PYTHON2_BUILTINS or name.startswith(".")
 
 
 def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
     doubts = (Doubt.LATE,) if use.lazy else ()
-    return (*doubts, Doubt.INCOMPLETE) if use.names[0].startswith(".") else doubts
+    return (*doubts, Doubt.INCOMPLETE) if use.names and use.names[0].startswith(".") else doubts

@@ -89,7 +89,9 @@ def _at_run_time(view: TargetView, package: Package, need: Need, name: str) -> t
         return (Doubt.DISPENSABLE,)
     # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
     wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
-    if not wanted or (need.how in _STARTED and need.role != "run"):
+    # Of what lies beside tests, the tests themselves are started.
+    started = need.role == "run" or (need.role == "test" and need.at.path.endswith((".py", ".test")))
+    if not wanted or (need.how in _STARTED and not started):
         return (Doubt.DISPENSABLE,)
     return (Doubt.LATE,)
 

@@ -1,12 +1,12 @@
 """python-version: a Python file uses syntax that a target's Python does not accept.
 
 What it does
-    Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python. On
-    a target with Python 2 it reports what the newest distro's Python 3 does not accept, and syntax of Python 3 in files
-    whose first line names `python`.
+    Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python, as
+    well as annotations that it evaluates and cannot (`list[int]`, `int | None`). On a target with Python 2 it reports
+    what the newest distro's Python 3 does not accept, and syntax of Python 3 in files whose first line names `python`.
 
 Why it breaks
-    The node stops with a SyntaxError before it runs.
+    The node stops with a SyntaxError, or a TypeError for annotations, before it runs.
 
 Severity
     error for files that are nodes, scripts or modules of the package; warning for tests, and for the first place of a

@@ -85,7 +85,9 @@ def _find_later(view: TargetView, package: Package, dependency: Dependency) -> U
     """The first update of the distro whose version a bound does not allow."""
     for ahead in view.updates:
         version = ahead.target.version(dependency.name)
-        for name, bound in dependency.bounds if version else ():
+        if not version:
+            continue
+        for name, bound in dependency.bounds:
             if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
                 data = {"version": version, "bound": f"{_SIGN[name]} {bound}", "horizon": ahead.name}
                 at = view.manifest_place(package, dependency)

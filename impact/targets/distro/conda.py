@@ -39,4 +39,4 @@ def libraries_of(platform: str, distro: str, day: str) -> dict[str, tuple[str, s
 
 def _last(rows: Mapping[str, str], day: str) -> str:
     """The version that stands on a day, of versions by the first day of each, oldest first."""
-    return next((version for since, version in reversed(rows.items()) if since <= day), "")
+    return next((version for since, version in reversed([*rows.items()]) if since <= day), "")

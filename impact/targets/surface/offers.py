@@ -167,10 +167,21 @@ class PackageOffer:
         return build or BuildSurface(self.package)
 
     @cached_property
-    def parameters(self) -> tuple[str, ...]:
-        """The parameters that the stored version declares."""
+    def parameters(self) -> dict[str, str | None]:
+        """The parameters that the stored version declares, with their defaults, as in Surface."""
         history = self._offers.history(self.package)
-        return tuple(name for name, _ in history.parameters(self.stored)) if history is not None else ()
+        return dict(history.parameters(self.stored)) if history is not None else {}
+
+    def last_default(self, parameter: str) -> str | None:
+        """The default that a parameter had in the last earlier version that declares it; None where there is none."""
+        history = self._offers.history(self.package)
+        if history is None:
+            return None
+        for version in reversed(self.line.versions[: self.place]):
+            declared = dict(history.parameters(version))
+            if parameter in declared:
+                return declared[parameter]
+        return None
 
     def every(self, side: str) -> Iterator[Offered]:
         """All such names."""

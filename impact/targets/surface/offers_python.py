@@ -31,6 +31,8 @@ class PythonOffers:
         """How the target stands to a use of a name that one of the packages may have, where it does not serve it; None
         where nothing is known."""
         offered = [offer for name in packages if (offer := self._offers.package(name)) is not None]
+        if len(offered) > 1:  # one that has no Python says nothing of it
+            offered = [offer for offer in offered if self.names(offer.package, offer.stored)] or offered
         key = (use.name, use.how, use.given, use.parameters, tuple(offer.package for offer in offered))
         if key not in self._answers:
             found = [self._asked(offer, use) for offer in offered]
@@ -122,7 +124,22 @@ class PythonOffers:
                 instead = self._instead(offer, gone, had)
                 return self._found("removed", offer, gone, last=versions[other], first=self._next(offer, other),
                                    replacement=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
+        if offer.exact and gone == use.name and self._never_had(offer, gone, place):
+            return self._found("not yet", offer, gone, form="never")
         return None
+
+    def _never_had(self, offer: PackageOffer, name: str, place: int) -> bool:
+        """Whether a module that is there surely lacks a name that others of the package have, in the version at a place
+        and in those beside it."""
+        module, _, word = name.rpartition(".")
+        history = self._offers.history(offer.package)
+        if history is None or word not in history.python_words:
+            return False
+        versions = offer.line.versions[max(place - 1, 0) : place + 2]
+        read = [self.names(offer.package, version) for version in versions if version not in offer.line.approximate]
+        return len(read) > 1 and all(
+            names is not None and module in names.modules and names.find(name) is None for names in read
+        )
 
     def _imported(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         """A name that is imported from a module that is there, and that no version knows in any module."""
