@@ -53,8 +53,8 @@ def undefined_name(view: TargetView):
             if use.module or not _is_of_python2(name):
                 doubts = (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
                 kind = "imported" if use.module else "module" if "." in name else "undefined"
-                # Whoever looks at the first in a file sees the others.
-                together = (Together(use.at.path),)
+                # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
+                together = (Together(use.at.path),) if kind == "undefined" else ()
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
 
     def find(package: Package, target: Target) -> Iterator[Refused]:
