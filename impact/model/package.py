@@ -1170,7 +1170,8 @@ class _Join:
                     folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
                 else:
                     single.update(posixpath.normpath(item) for item in rule.items)
-            if any("$" in item and not _BUILT.match(item) for item in (*single, *folders)):
+            made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
+            if any("$" in item for item in (*(single - made), *folders)):
                 folders.append(self.path)
             self._covered = single, tuple(folders)
         single, folders = self._covered
