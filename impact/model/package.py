@@ -1152,13 +1152,15 @@ class _Join:
         return role or ("run" if path in self.started or self.is_installed(path) else "aside")
 
     def is_run_as_test(self, path: str) -> bool:
-        """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one."""
+        """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one, and modules
+        of packages of Python, which they may import."""
         build = self.build
         if self.build_type == "ament_python" or not build.files or path in self.started or self.is_installed(path):
             return True
         if build.unresolved or any(_MAY_TEST.search(u.name) for u in build.uses if u.kind == "command"):
             return True
-        if posixpath.basename(path) in self.interpreted:
+        folder, name = posixpath.split(path)
+        if name in self.interpreted or f"{folder}/__init__.py" in self.files:
             return True
         run = [source for target in build.targets if target.kind == "test" for source in target.sources]
         folders = [one if "." not in posixpath.basename(one) else posixpath.dirname(one) for one in run]
@@ -1196,7 +1198,8 @@ class _Join:
                     folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
                 else:
                     single.update(posixpath.normpath(item) for item in rule.items)
-            if any("$" in item and not _BUILT.match(item) for item in (*single, *folders)):
+            made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
+            if any("$" in item for item in (*(single - made), *folders)):
                 folders.append(self.path)
             self._covered = single, tuple(folders)
         single, folders = self._covered

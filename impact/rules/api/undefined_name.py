@@ -58,8 +58,8 @@ def undefined_name(view: TargetView):
                 continue
             if use.module or not _is_of_python2(name):
                 doubts = (*_doubts_of_import(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
-                # Whoever looks at the first in a file sees the others.
-                together = (Together(use.at.path),)
+                # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
+                together = (Together(use.at.path),) if kind == "undefined" else ()
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
@@ -99,8 +99,7 @@ def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diag
         for name in owner.digest.python_offer.list_lacking(use.module, use.names):
             kind = "module of another" if name == use.module else "imported"
             data = {"module": use.module, "owner": owner.name}
-            doubts, together = _doubts_of_import(view, use), (Together(use.at.path),)
-            yield Diagnostic(use.at, name, package.name, data, kind, doubts, together=together)
+            yield Diagnostic(use.at, name, package.name, data, kind, _doubts_of_import(view, use))
 
 
 def _doubts_of_import(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:

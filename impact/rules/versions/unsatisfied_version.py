@@ -84,10 +84,8 @@ def unsatisfied_version(view: TargetView, package: Package):
 def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
     """The first update of the distro whose version a bound does not allow."""
     for ahead in view.updates:
-        version = ahead.target.version(dependency.name)
-        if not version:
-            continue
-        for name, bound in dependency.bounds:
+        version = ahead.target.version(dependency.name) or ""
+        for name, bound in dependency.bounds if version else ():
             if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
                 data = {"version": version, "bound": f"{_SIGN[name]} {bound}", "horizon": ahead.name}
                 at = view.manifest_place(package, dependency)
