@@ -125,7 +125,7 @@ class _Modules:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
-    def _built(self) -> set[str]:
+    def _built(self) -> frozenset[str]:
         roots = tuple(f"{root}/" for several in self._roots.values() for root in several)
         inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
         return self.sources.union(name for name in self._others if name not in inside and name not in self._by_name)
