@@ -114,8 +114,8 @@ ROWS = {
         "undeclared-package",
         "humble",
         {
-            **ament("sled", "find_package(ament_cmake_pytest REQUIRED)", "test_depend:ament_cmake_pytest",
-                    "test_depend:launch_ros"),
+            **ament("sled", "find_package(ament_cmake_pytest REQUIRED)\nament_add_pytest_test(run test/test_run.py)",
+                    "test_depend:ament_cmake_pytest", "test_depend:launch_ros"),
             "sled/test/test_run.py": "import launch_ros.actions\n",
         },
         ("sled/package.xml", "<test_depend>launch_ros</test_depend>", ""),
