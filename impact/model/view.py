@@ -120,6 +120,7 @@ class TargetView:
         self._spreads: dict[frozenset[str], frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
+        self._downloaded: dict[str, tuple[str, ...]] = {}
         self._opaque: dict[str, list[str]] = {}
         self._unknown: dict[str, tuple[str, ...]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
@@ -728,6 +729,17 @@ class TargetView:
     def _installed_with(self, name: str) -> tuple[str, ...]:
         return tuple(self.installed_with(name))
 
+    def may_be_downloaded(self, package: Package, header: str) -> bool:
+        """Whether a header or its folder is called after something that the build downloads, or after a folder of the
+        package that was not read, such as a submodule."""
+        if package.name not in self._downloaded:
+            folder = f"{package.path}/" if package.path else ""
+            unread = (path.rpartition("/")[2] for path in self.workspace.unread if path.startswith(folder))
+            fetched = (t.name for t in package.build.targets if t.kind in ("fetched", "external"))
+            self._downloaded[package.name] = tuple(name.lower() for name in {*fetched, *unread} if name)
+        downloaded = self._downloaded[package.name]
+        return bool(downloaded) and any(part.startswith(downloaded) for part in header.lower().split("/"))
+
     def blind(self, package: Package, name: str = "") -> bool:
         """True when dependencies of something in the closure are not known anywhere, so that it may lack something; or
         this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
@@ -1008,6 +1020,9 @@ class TargetView:
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
+            head = include.path.partition("/")[0]
+            if providers[0].name != head and self.may_be_downloaded(package, include.path):
+                continue
             yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in digest.imports:

@@ -341,6 +341,8 @@ class Workspace:
                     continue
                 if owner.manifest.metapackage or not self._closed(owner) or self.provides_header(include.path):
                     continue
+                if any(path.endswith(f"/{include.path}") for path in owner.digest.files):
+                    continue  # a file that is not called like a header (`types.macro`)
                 found.add(include.path)
         return frozenset(found)
 

@@ -130,6 +130,27 @@ SILENT = {
         ),
         ("CMakeLists.txt", "FetchContent_MakeAvailable(Catch2)\n", ""),
     ),
+    "a header that is called after what the build downloads": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "include(FetchContent)\nFetchContent_Declare(yaml-cpp GIT_REPOSITORY https://example.org/y.git)\n"
+            "FetchContent_MakeAvailable(yaml-cpp)\nadd_executable(weigh weigh.cpp)\n"
+            "target_include_directories(weigh PRIVATE ${yaml-cpp_SOURCE_DIR}/include)",
+            weigh_cpp="#include <yaml-cpp/yaml.h>\nint main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "FetchContent_MakeAvailable(yaml-cpp)\n", ""),
+    ),
+    "an included file of the package that is not called like a header": Silent(
+        "removed-header",
+        ("humble",),
+        ament(
+            "add_executable(pull pull.cpp)\ntarget_include_directories(pull PRIVATE include)",
+            pull_cpp='#include "sled/pull.hpp"\n#include "sled/types.macro"\nint main() { return 0; }\n',
+        )
+        | {"include/sled/types.macro": "TYPE(int)\n", "include/sled/pull.hpp": "int pull();\n"},
+        ("pull.cpp", "types.macro", "kinds.macro"),
+    ),
     "what every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),

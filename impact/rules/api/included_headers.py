@@ -84,7 +84,7 @@ class IncludedHeaders:
         if found is None:
             return None
         if found.form == "platform" and (
-            view.opaque_libraries(package, path) or view.blind(package) or _is_downloaded(package, path)
+            view.opaque_libraries(package, path) or view.blind(package) or view.may_be_downloaded(package, path)
         ):
             return HeaderLoss(None)  # something that comes along has contents that are not known
         return HeaderLoss(found, found.form)
@@ -97,12 +97,6 @@ class IncludedHeaders:
             return change
         change = self._early.get(path)
         return change if change is not None and view.has_released_header(change.package, path) is False else None
-
-
-def _is_downloaded(package: Package, path: str) -> bool:
-    """Whether the build downloads a project that is called like the folder of a header."""
-    downloaded = (target.name for target in package.build.targets if target.kind in ("fetched", "external"))
-    return path.partition("/")[0].lower() in map(str.lower, downloaded)
 
 
 def included_headers(view: TargetView) -> IncludedHeaders:
