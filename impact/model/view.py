@@ -1020,8 +1020,8 @@ class TargetView:
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
-            head = include.path.partition("/")[0]
-            if providers[0].name != head and self.may_be_downloaded(package, include.path):
+            named = providers[0].kind == "ros" and providers[0].name == include.path.partition("/")[0]
+            if not named and self.may_be_downloaded(package, include.path):
                 continue
             yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
                        True, include.public, include.targets)  # fmt: skip

@@ -134,7 +134,7 @@ SILENT = {
         "undeclared-package",
         ("humble",),
         ament(
-            "include(FetchContent)\nFetchContent_Declare(yaml-cpp GIT_REPOSITORY https://example.org/y.git)\n"
+            "include(FetchContent)\nFetchContent_Declare(yaml-cpp URL https://example.org/y.tar.gz)\n"
             "FetchContent_MakeAvailable(yaml-cpp)\nadd_executable(weigh weigh.cpp)\n"
             "target_include_directories(weigh PRIVATE ${yaml-cpp_SOURCE_DIR}/include)",
             weigh_cpp="#include <yaml-cpp/yaml.h>\nint main() { return 0; }\n",
