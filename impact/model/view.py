@@ -768,23 +768,28 @@ class TargetView:
         return len(stem) > 2 and any(n.startswith(stem) and self._is_plain_build(n) for n in self.closure(package))
 
     def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
-        """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
-        platform has them (Gazebo comes from its own): they may bring any system library. wanted: a header or CMake
+        """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
+        (Gazebo and its metapackages come from their own): they may bring any system library. wanted: a header or CMake
         package; released libraries that are called like it and whose contents are not stored may bring it too."""
         if package.name not in self._opaque:
             self._opaque[package.name] = [
                 n for n in self.closure(package)
-                if n not in self.workspace.packages
-                and (libraries := [d for d in self.debian(n) if d.endswith("-dev") or d.startswith("gazebo")])
-                and (n.startswith("gazebo") or not self.providers.knows_system([n, *libraries]))
+                if n not in self.workspace.packages and not n.startswith("python")
+                and (bringing := [d for d in self.debian(n) if d.endswith("-dev") or self._is_unknown_collection(d)])
+                and (n.startswith("gazebo") or not self.providers.knows_system([n, *bringing]))
             ]  # fmt: skip
         stem = re.split(r"[^a-z]", wanted.lower())[0]
         unread = [n for n in self.closure(package) if stem in n and self._is_unread_library(n)] if len(stem) > 2 else []
         return [*self._opaque[package.name], *unread]
 
+    def _is_unknown_collection(self, debian: str) -> bool:
+        """Whether a package is no library, and of no archive that was read."""
+        return not debian.startswith("lib") and not self.apt.knows(debian)
+
     def _is_unread_library(self, name: str) -> bool:
-        """Whether what a plain build installs is not stored."""
-        return self._is_plain_build(name) and self.offers.package(name) is None
+        """Whether what a plain build, or the build of a library that a package carries, installs is not stored."""
+        carried = name.endswith("_vendor") and name not in self.workspace.packages
+        return carried or (self._is_plain_build(name) and self.offers.package(name) is None)
 
     @cached_method
     def _is_plain_build(self, name: str) -> bool:

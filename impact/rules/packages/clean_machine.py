@@ -17,6 +17,8 @@ ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program",
 _STARTED = frozenset(("launch", "plugin", "shell"))
 TEST_HEADERS = ("gtest/", "gmock/")
 """How the headers begin that macros which make tests bring along."""
+# Debian packages of libraries: `libgazebo11-dev`, `libqt5core5a`.
+_LIBRARY = re.compile(r"lib|.*-dev\Z")
 # What a package that generates messages hands on to whoever uses them.
 _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
@@ -120,8 +122,11 @@ def _unknown(view: TargetView, package: Package, need: Need, name: str) -> tuple
     what is needed."""
     if is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
         return (Doubt.INCOMPLETE,)
-    if need.providers[0].kind == "system" and view.opaque_libraries(package, need.subject):
-        return (Doubt.INCOMPLETE,)
+    opaque = view.opaque_libraries(package, need.subject) if need.providers[0].kind == "system" else ()
+    if opaque:
+        # A key that installs no library itself is there for what it brings along.
+        collects = any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque))
+        return (Doubt.DISPENSABLE if collects else Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
 

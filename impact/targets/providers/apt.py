@@ -37,6 +37,10 @@ class Apt:
         self._inferred = platform not in graph.suites
         self._mask = sum({1 << graph.suites.index(one) for one in near}) if all(near) else INFERRED - 1
 
+    def knows(self, package: str) -> bool:
+        """Whether some archive that was read has a package which comes along with others, or brings others."""
+        return package in self._place
+
     @cached_property
     def base(self) -> frozenset[str]:
         """Packages of every machine that builds."""
