@@ -132,5 +132,9 @@ def find_misspelt(view: TargetView, package: Package, path: str) -> str | None:
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:
-    """Whether a package is built for both generations of ROS, and therefore includes headers of both."""
-    return view.target.ros == 2 and any(include.path.startswith("ros/") for include in package.digest.includes)
+    """Whether a package is built for both generations of ROS, or with packages of ROS 1 that ros1_bridge finds, and
+    therefore includes headers of both."""
+    if view.target.ros != 2:
+        return False
+    bridged = "ros1_bridge" in view.declared(package)
+    return bridged or any(include.path.startswith("ros/") for include in package.digest.includes)

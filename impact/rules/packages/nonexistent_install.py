@@ -76,6 +76,8 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue
             if install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
                 continue  # a folder that git cannot keep while it is empty
+            if install.only:
+                continue  # CMake looks for files that match, and goes on without any
             if install.kind == "files" and "." in path and _is_written(path):
                 continue
             if is_absent(view, package, path):

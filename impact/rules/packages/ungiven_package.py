@@ -83,6 +83,8 @@ def ungiven_package(view: TargetView, package: Package):
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
+                if view.list_unknown(frozenset(given & view.declared(package).keys())):
+                    items = None  # what one of them brings is not known
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)
                 reach[target] = (
