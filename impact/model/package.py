@@ -53,6 +53,7 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
+_PLAIN_PYTHON = re.compile(r"#!\s*/\S*\bpython\b(?![\d.])|#!\s*/usr/bin/env\s+python(?!\S)")
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -201,8 +202,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. shells: shell
-    scripts without an ending. interpreted: names of Python files that CMake code gives to an interpreter.
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. plain_scripts: those
+    whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
+    Python files that CMake code gives to an interpreter.
     """
 
     name: str
@@ -236,6 +238,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     mains: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
+    plain_scripts: tuple[str, ...] = ()
     shells: tuple[str, ...] = ()
     interpreted: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
@@ -538,6 +541,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
+            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter)),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),

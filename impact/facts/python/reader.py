@@ -10,7 +10,7 @@ import msgspec
 from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
-from .bound import PYTHON2_METHODS
+from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
 from .text import SourceText, caught_by, child_fields
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
@@ -43,9 +43,12 @@ class AttributeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 TRY = Condition("python", "try")
 EXCEPT = Condition("python", "try", True)
+# The same of an except that catches anything; told apart by identity, as no name is expected to be missing there.
+_EXCEPT_ANY = Condition("python", "try", True)
 # An except that catches these makes the import, or the use of a name, optional.
 IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
 _NAME_ERRORS = frozenset(("AttributeError", "NameError", "Exception", "BaseException"))
+_ANY_ERRORS = frozenset(("Exception", "BaseException"))
 # A test that mentions one of these tells about the interpreter or the machine rather than about the run.
 _ABOUT_MACHINE = re.compile(
     r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
@@ -175,7 +178,10 @@ class PythonReader(ObjectUses, SourceText):
 
     def note_use(self, text: str, line: int, offset: int) -> None:
         """Notes where a name, dotted or not, is used first; that of a method begins with the dot."""
-        key = (self.scope, text, self.use_conditions)
+        conditions, head = self.use_conditions, text.partition(".")[0]
+        if head in self.unbound and head not in PYTHON2_BUILTINS:
+            conditions = tuple(one for one in conditions if one is not _EXCEPT_ANY)
+        key = (self.scope, text, conditions)
         known = self.uses.get(key)
         if known is None:
             self.uses[key] = (line, offset, self.may_not_run)
@@ -408,13 +414,14 @@ class PythonReader(ObjectUses, SourceText):
         # Handlers run after any part of the body.
         self.scope.objects = {name: type_ if done.get(name) == type_ else "" for name, type_ in before.items()}
         self.call_conditions = (*outside, EXCEPT) if refusal else outside
+        instead = _EXCEPT_ANY if caught.isdisjoint((IMPORT_ERRORS | _NAME_ERRORS) - _ANY_ERRORS) else EXCEPT
         for handler in node.handlers:
             if handler.type is not None:
                 self.visit(handler.type)
             if handler.name:
                 self.scope.bound.add(handler.name)
                 self.hold(handler.name, "")
-            self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
+            self.under(handler.body, EXCEPT if covers_import else None, instead if covers_use else None)
         self.call_conditions = outside
         self.scope.objects = done
         self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)

@@ -107,7 +107,8 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`, and regular expressions then with `~`.
     only: with FILES_MATCHING, so that nothing but what the patterns name is installed. rename: of files. export: the
     export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets.
-    executable: a folder whose files keep, or are given, the permission to be executed."""
+    executable: a folder whose files keep, or are given, the permission to be executed. rewritten: the first line of
+    programs in Python is made to name the interpreter that the package is built with."""
 
     kind: str
     items: tuple[str, ...]
@@ -121,6 +122,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     namespace: str = ""
     includes: tuple[str, ...] = ()
     executable: bool = False
+    rewritten: bool = False
 
 
 class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -136,7 +136,7 @@ def catkin_install_python(run: Interpreter, call: CommandCall, args: list[Word])
     given = sections(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
     destination = run.shown(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
     for item in split_words(given.get("PROGRAMS", [])):
-        run.add_install("programs", (run.tree_path(item),), destination, item)
+        run.add_install("programs", (run.tree_path(item),), destination, item, rewritten=True)
 
 
 _TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS")

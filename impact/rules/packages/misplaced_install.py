@@ -3,7 +3,9 @@
 What it does
     Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
     name than code includes them by, scripts that install(FILES) or install(DIRECTORY) copies without execute
-    permission, registered components outside of `lib`, and install folders of a Python version other than the target's.
+    permission, registered components outside of `lib`, install folders of a Python version other than the target's, and
+    programs whose first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and
+    later).
 
 Why it breaks
     The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
@@ -29,7 +31,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.installed import copied_files
 from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .install_rules import is_installed, list_installing
 
 
@@ -60,6 +62,9 @@ from .install_rules import is_installed, list_installing
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
+        "interpreter": Text(
+            "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is", "{cure}"
+        ),
     },
 )
 def misplaced_install(view: TargetView):
@@ -69,6 +74,7 @@ def misplaced_install(view: TargetView):
         yield from _list_renamed(view, package, installs)
         yield from _list_components(view, package, installs)
         yield from _list_other_python(view, package, installs)
+        yield from _list_plain(view, package, installs)
 
 
 def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
@@ -111,7 +117,7 @@ def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagno
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
     scripts = {*package.digest.scripts, *package.digest.shells}
     for install in installs:
-        among_programs = re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination)
+        among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable and among_programs:
             copied = [path for path, _ in copied_files(install, "", package.digest.files) if path in scripts]
         elif install.kind == "files":
@@ -141,6 +147,9 @@ def _is_node(view: TargetView, package, script: str) -> bool:
     return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
 
 
+_ONE_LINE = (Together("interpreter"),)
+# Folders for programs, as install rules name them.
+_OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
 # Scripts that other programs run, as data.
 _RUN_BY = (".launch.py", "setup.py", "conftest.py")
 
@@ -190,3 +199,27 @@ def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnost
         if found is not None and found.group(1) != own and view.certain(install.conditions):
             data = {"version": found.group(1), "own": own}
             yield Diagnostic(install.at, install.destination, package.name, data, "python", (Doubt.LATE,))
+
+
+# The minor version of Python 3 since which the systems of targets have no command `python`.
+_WITHOUT_PLAIN = 8
+
+
+def _list_plain(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies."""
+    target = view.target
+    if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
+        return
+    cure = "start it with `#!/usr/bin/env python3`"
+    if package.build_type == "catkin":
+        cure = "install it with catkin_install_python()"
+    for install in installs:
+        programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
+        if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
+            continue
+        for path, _ in copied_files(install, "", package.digest.files):
+            name = posixpath.basename(path)
+            if path in package.digest.plain_scripts and name not in package.digest.interpreted:
+                data = {"platform": target.platform, "cure": cure}
+                doubts = (Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
+                yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
