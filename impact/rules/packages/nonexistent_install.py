@@ -74,12 +74,21 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
-            if install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
-                continue  # a folder that git cannot keep while it is empty
+            if install.kind == "directory" and _may_be_empty(package, path):
+                continue
             if install.kind == "files" and "." in path and _is_written(path):
                 continue
             if is_absent(view, package, path):
                 yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
+
+
+def _may_be_empty(package, path: str) -> bool:
+    """Whether a folder may be one for headers or built files that git cannot keep while it is empty: nothing lies
+    beside it, in a folder above it that is called so too."""
+    above = posixpath.dirname(path)
+    if not re.search(r"(^|/)(include|lib|bin)(/|$)", path):
+        return False
+    return not re.search(r"(^|/)include(/|$)", above) or not any(f.startswith(f"{above}/") for f in package.digest.files)
 
 
 def _stops_symlinks(package, install, item: str) -> bool:
