@@ -19,8 +19,9 @@ Use instead
     ament_export_dependencies(nav2_costmap_2d nav2_util)
 
 Not reported
-    Names that anybody is known to provide, of which CMake itself has a module, that some distro has released, or that no declared name resembles; names
-    that resemble a released package of plain CMake whose configurations are not known.
+    Names that anybody is known to provide, of which CMake itself has a module, that some distro has released, or that
+    no declared name resembles; names that resemble a released package of plain CMake whose configurations are not
+    known.
 """
 
 from ...model.cmake.links import stops_at_names

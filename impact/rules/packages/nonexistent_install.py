@@ -83,12 +83,12 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
 
 
 def _may_be_empty(package, path: str) -> bool:
-    """Whether a folder may be one for headers or built files that git cannot keep while it is empty: nothing lies
-    beside it, in a folder above it that is called so too."""
-    above = posixpath.dirname(path)
-    if not re.search(r"(^|/)(include|lib|bin)(/|$)", path):
+    """Whether a folder may be one for headers or built files that git cannot keep while it is empty, and not
+    one of `include` beside others that are there."""
+    above = f"{posixpath.dirname(path)}/"
+    if "/include/" in f"/{above}" and any(name.startswith(above) for name in package.digest.files):
         return False
-    return not re.search(r"(^|/)include(/|$)", above) or not any(f.startswith(f"{above}/") for f in package.digest.files)
+    return re.search(r"(^|/)(include|lib|bin)(/|$)", path) is not None
 
 
 def _stops_symlinks(package, install, item: str) -> bool:

@@ -2,7 +2,8 @@
 
 What it does
     Reports calls of functions and macros that a released package defines, where the caller finds neither that package
-    nor one that brings it, or finds it for the tests alone while the call is made without them, and configurations that call find_dependency() first of all and do not include its module.
+    nor one that brings it, or only for its tests, and configurations that call find_dependency() first of all and do
+    not include its module.
 
 Why it breaks
     CMake stops: "Unknown CMake command".
