@@ -1008,6 +1008,8 @@ class TargetView:
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
+            if len(providers) > 1 and any(p.name == package.name for p in providers):
+                continue  # the package has one of its own
             yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in digest.imports:
