@@ -1028,6 +1028,8 @@ class TargetView:
             named = providers[0].kind == "ros" and providers[0].name == include.path.partition("/")[0]
             if not named and self.may_be_downloaded(package, include.path):
                 continue
+            if len(providers) > 1 and any(p.name == package.name for p in providers):
+                continue  # the package has one of its own
             yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in digest.imports:

@@ -216,28 +216,27 @@ class Workspace:
         return found
 
     @cached_property
-    def generated_headers(self) -> dict[str, str]:
+    def generated_headers(self) -> dict[str, list[str]]:
         """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file, custom commands) to
-        the package."""
-        found = {}
-        for package in self:
+        the packages, the last first."""
+        found: dict[str, list[str]] = {}
+        for package in reversed(list(self)):
+            made = {posixpath.basename(path) for path in package.build.made if HEADER_NAME.search(path)}
             for item in package.build.generated:
                 if item.how == "parameters":
-                    found[f"{item.target}.hpp"] = package.name
+                    made.add(f"{item.target}.hpp")
                 elif item.how == "protobuf":
-                    for file in item.files:
-                        found[posixpath.basename(file).replace(".proto", ".pb.h")] = package.name
-            for path in package.build.made:
-                if HEADER_NAME.search(path):
-                    found[posixpath.basename(path)] = package.name
+                    made.update(posixpath.basename(file).replace(".proto", ".pb.h") for file in item.files)
             for path in package.digest.files:
                 name = posixpath.basename(path)
                 if name.endswith(".ui"):
-                    found["ui_" + name[:-3] + ".h"] = package.name
+                    made.add("ui_" + name[:-3] + ".h")
                 elif name.endswith((".h.in", ".hpp.in", ".hh.in")):
-                    found[name[:-3]] = package.name
+                    made.add(name[:-3])
                 elif name.endswith(".proto"):
-                    found[name.replace(".proto", ".pb.h")] = package.name
+                    made.add(name.replace(".proto", ".pb.h"))
+            for name in made:
+                found.setdefault(name, []).append(package.name)
         return found
 
     @cached_property
@@ -298,9 +297,9 @@ class Workspace:
         owners = self.rooted_headers.get(include) or self.headers.get(include)
         if owners:
             return owners
-        maker = self.generated_headers.get(include.rsplit("/", 1)[-1])
-        if maker:
-            return [maker]
+        makers = self.generated_headers.get(include.rsplit("/", 1)[-1])
+        if makers:
+            return makers
         head, _, rest = include.partition("/")
         package = self.packages.get(head)
         return [head] if package is not None and rest and self._generates(package, rest) else []

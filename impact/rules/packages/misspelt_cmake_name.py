@@ -19,11 +19,13 @@ Use instead
     ament_export_dependencies(nav2_costmap_2d nav2_util)
 
 Not reported
-    Names that anybody is known to provide, that some distro has released, or that no declared name resembles; names
-    that resemble a released package of plain CMake whose configurations are not known.
+    Names that anybody is known to provide, of which CMake itself has a module, that some distro has released, or that
+    no declared name resembles; names that resemble a released package of plain CMake whose configurations are not
+    known.
 """
 
 from ...model.cmake.links import stops_at_names
+from ...model.cmake.names import MODULES
 from ...model.misspelling import SpellingIndex, folded
 from ...model.view import TargetView
 from ...model.workspace import Package
@@ -46,7 +48,7 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             continue
         if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
             continue
-        if name in prefixes:
+        if name in prefixes or f"Find{name}" in MODULES:
             continue
         if near is None:
             near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))

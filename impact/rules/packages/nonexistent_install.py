@@ -74,14 +74,21 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
-            if install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
-                continue  # a folder that git cannot keep while it is empty
-            if install.only:
-                continue  # CMake looks for files that match, and goes on without any
+            if install.kind == "directory" and (install.only or _may_be_empty(package, path)):
+                continue
             if install.kind == "files" and "." in path and _is_written(path):
                 continue
             if is_absent(view, package, path):
                 yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
+
+
+def _may_be_empty(package, path: str) -> bool:
+    """Whether a folder may be one for headers or built files that git cannot keep while it is empty, and not
+    one of `include` beside others that are there."""
+    above = f"{posixpath.dirname(path)}/"
+    if "/include/" in f"/{above}" and any(name.startswith(above) for name in package.digest.files):
+        return False
+    return re.search(r"(^|/)(include|lib|bin)(/|$)", path) is not None
 
 
 def _stops_symlinks(package, install, item: str) -> bool:

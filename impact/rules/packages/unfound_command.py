@@ -2,7 +2,8 @@
 
 What it does
     Reports calls of functions and macros that a released package defines, where the caller finds neither that package
-    nor one that brings it, and configurations that call find_dependency() first of all and do not include its module.
+    nor one that brings it, or only for its tests, and configurations that call find_dependency() first of all and do
+    not include its module.
 
 Why it breaks
     CMake stops: "Unknown CMake command".
@@ -26,6 +27,7 @@ Not reported
 
 import re
 
+from ...model.cmake.build import for_tests
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
@@ -56,14 +58,16 @@ def unfound_command(view: TargetView, package: Package):
     calls = [use for use in build.uses if use.kind == "command" and use.name in commands]
     if not calls or not build.project or any("find_package(" in reason for _, reason in build.unresolved):
         return
-    names = {found.name for found in build.found if found.how in ("find_package", "catkin", "ament_auto")}
-    names.update(found.name for found in build.found if found.how == "ament_lint_auto")
-    if any(not view.cmake(name) for name in names):
+    hows = ("find_package", "catkin", "ament_auto", "ament_lint_auto")
+    found = [f for f in build.found if f.how in hows]
+    if any(not view.cmake(f.name) for f in found):
         return  # what a private package finds along is not known
-    reached = view.widest_spread(names) | view.roles.found_with(names) | {package.name}
+    with_tests = _list_reached(view, package, {f.name for f in found})
+    built = _list_reached(view, package, {f.name for f in found if not for_tests(f.conditions)})
     seen = set()
     for use in calls:
         owners = commands[use.name].split()
+        reached = with_tests if for_tests(use.conditions) else built
         if not view.active(use.conditions):
             continue
         if not reached.isdisjoint(owners) or not any(view.available(owner) for owner in owners):
@@ -79,6 +83,11 @@ def unfound_command(view: TargetView, package: Package):
             doubts = (*doubts_of_place(view, "build", use.conditions), known or Doubt.INCOMPLETE)
             together = view.target.ros == 2 or Doubt.LUCKY
             yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, doubts=(*doubts, together))
+
+
+def _list_reached(view: TargetView, package: Package, names: set[str]) -> frozenset[str]:
+    """What finding packages may bring."""
+    return view.widest_spread(names) | view.roles.found_with(names) | {package.name}
 
 
 def _name_to_find(view: TargetView, package: Package, owners: list[str]) -> str:

@@ -1,0 +1,43 @@
+"""call-after-ament-package: a command that ament_package() has to come after is called after it.
+
+What it does
+    Reports ament_export_*() and rosidl_generate_interfaces() behind ament_package() in the same file.
+
+Why it breaks
+    ament_package() has written the configuration already: CMake stops, "must be called before ament_package()".
+
+Severity
+    error; warning where CMake may not reach the call.
+
+Example
+    ament_package()
+    ament_export_dependencies(rclcpp)
+
+Use instead
+    ament_export_dependencies(rclcpp)
+    ament_package()
+
+Not reported
+    Calls in other files than ament_package().
+"""
+
+from ...model.view import TargetView
+from ...model.workspace import Package
+from ..rule import Diagnostic, Text, doubts_of_place, rule
+
+
+@rule(
+    texts=Text("{subject}() is called after ament_package(), at which CMake stops", "call it before ament_package()"),
+)
+def call_after_ament_package(view: TargetView, package: Package):
+    last = package.build.ament_package
+    if last is None:
+        return
+    calls = [(e.how, e.at, e.conditions) for e in package.build.exports if e.how.startswith("ament_export_")]
+    calls += [
+        ("rosidl_generate_interfaces", g.at, g.conditions) for g in package.build.generated if g.how == "rosidl"
+    ]
+    for name, at, conditions in calls:
+        if at.path == last.path and at.line > last.line and view.active(conditions):
+            yield Diagnostic(at, name, package.name, doubts=doubts_of_place(view, "build", conditions))
+            break
