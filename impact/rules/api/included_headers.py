@@ -96,7 +96,9 @@ class IncludedHeaders:
         if change is not None and not view.nested_header(change.package, path):
             return change
         change = self._early.get(path)
-        return change if change is not None and view.has_released_header(change.package, path) is False else None
+        if change is None or view.has_released_header(path.partition("/")[0], path):
+            return None  # the package that it is called after has it
+        return change if view.has_released_header(change.package, path) is False else None
 
 
 def included_headers(view: TargetView) -> IncludedHeaders:
