@@ -16,6 +16,7 @@ TEXTS = {
     "ros 1 name": Text("`{subject}` is the ROS 1 name of a generated header", "include `{replacement}`"),
     "ros 2 name": Text("`{subject}` is the ROS 2 name of a generated header", "include `{replacement}`"),
     "case": Text("no header `{subject}` is generated: generated headers are in lower case", "include `{replacement}`"),
+    "folder": Text("no header `{subject}` is generated: `{folder}` holds them", "include `{replacement}`"),
     "moved": Text("`{upstream}` generates no `{subject}`", "include `{replacement}`"),
     "never generated": Text(
         "no released version of {upstream} has an interface for `{subject}`", "[[did you mean `{replacement}`?]]"
@@ -28,6 +29,7 @@ _GENERATED_HEADER = {
     1: re.compile(r"[A-Z][A-Za-z0-9]*(?<!Config)\.h\Z"),
     2: re.compile(r"(?:msg|srv|action)/[a-z][a-z0-9_]*(?<!__struct)(?<!__traits)(?<!__builder)\.hpp\Z"),
 }
+_FOLDERS = ("msg", "srv", "action")
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _C_HEADER = re.compile(r"(?P<stem>(?P<package>\w+)/(?:msg|srv|action)/[a-z0-9_]+)\.h\Z")
 
@@ -70,7 +72,7 @@ def find_interface_fault(view: TargetView, path: str) -> Fault | None:
 
 
 def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
-    """A spelling of the other generation, or in another case."""
+    """A spelling of the other generation, in another case, or without the folder."""
     if not _generates_interfaces(view, head):
         return None
     parts = rest.split("/")
@@ -79,11 +81,26 @@ def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
         if len(parts) == 1 and rest.endswith(".h") and _CAMEL.match(name):
             folder = "srv" if name.endswith(("Request", "Response")) else "msg"
             return Fault("ros 1 name", {"replacement": f"{head}/{folder}/{snake(name)}.hpp"})
-        if len(parts) == 2 and parts[0] in ("msg", "srv", "action") and name != name.lower():
+        if len(parts) == 1 and rest.endswith(".hpp") and (folder := _find_folder(view, head, name)):
+            return Fault("folder", {"folder": f"{head}/{folder}", "replacement": f"{head}/{folder}/{rest}"})
+        if len(parts) == 2 and parts[0] in _FOLDERS and name != name.lower():
             return Fault("case", {"replacement": f"{head}/{parts[0]}/{snake(name).replace('__', '_')}.hpp"})
-    elif len(parts) == 2 and parts[0] in ("msg", "srv", "action") and rest.endswith(".hpp"):
+    elif len(parts) == 2 and parts[0] in _FOLDERS and rest.endswith(".hpp"):
         return Fault("ros 2 name", {"replacement": f"{head}/<Name>.h"})
     return None
+
+
+def _find_folder(view: TargetView, head: str, stem: str) -> str:
+    """The folder of the only generated header of a package with this stem; empty where the package has such a header
+    beside the folders."""
+    if head in view.workspace.packages:
+        made = {folder for folder in _FOLDERS if view.workspace.is_interface_header(head, f"{folder}/{stem}.hpp")}
+    elif view.providers.known_releases(head) and not view.providers.header_history(head, f"{head}/{stem}.hpp"):
+        history = default_fields().history(head, view.target.ros)
+        made = {folder for folder in _FOLDERS if history is not None and f"{folder}/{stem}" in history.by_header}
+    else:
+        return ""
+    return made.pop() if len(made) == 1 else ""
 
 
 def _generates_interfaces(view: TargetView, name: str) -> bool:

@@ -2,9 +2,9 @@
 
 What it does
     Reports `#include` lines whose path no version of anything has: spellings of generated headers that belong to the
-    other ROS generation, or to C where rclcpp is used, or in another case; generated headers whose interface no version
-    of the package has, or another package of the workspace has; own headers with a letter, the case or the ending
-    wrong; configuration headers of dynamic_reconfigure below a name that no package has.
+    other ROS generation, or to C where rclcpp is used, in another case, or without their folder; generated headers
+    whose interface no version of the package has, or another package of the workspace has; own headers with a letter,
+    the case or the ending wrong; configuration headers of dynamic_reconfigure below a name that no package has.
 
 Why it breaks
     The compiler stops with "No such file or directory".

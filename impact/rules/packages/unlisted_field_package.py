@@ -21,13 +21,14 @@ Not reported
     generator is given.
 """
 
-from ...facts.interface import PRIMITIVES
+from ...facts.interface import PRIMITIVES, TIMES, full_name
 from ...model.cmake.build import At
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
 
-_ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
+_FROM_ROS1 = TIMES | {"Header"}
+_ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}
 
 
 @rule(
@@ -37,7 +38,9 @@ _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
             "the line that begins with `{subject}` is neither a field nor a constant",
             "write `package/Type name`",
         ),
-        "own type": Text("`{package}` has no message `{subject}`", "correct the type, or name its package"),
+        "own type": Text(
+            "`{package}` has no message `{subject}`", "correct the type, or name its package[[: `{replacement}`]]"
+        ),
         "other type": Text("`{owner}` has no message `{name}`", "correct the type"),
         "dependency": Text(
             "`{type}` is a field type, but `{subject}` is not given to the generator",
@@ -57,17 +60,20 @@ def unlisted_field_package(view: TargetView, package: Package):
             continue
         for line, text in interface.definition.unread:
             yield Diagnostic(At(interface.path, line), text.split()[0], package.name, kind="no field")
+        adapted = package.build_type != "catkin" and interface.definition.kind != "idl"
+        primitive = PRIMITIVES if adapted else _ROS1_PRIMITIVE
         for section in interface.definition.sections:
             for field in section.fields:
                 owner, _, name = field.type.rpartition("/")
                 owner = owner.split("/")[0]
                 if field.type == "Header" and package.build_type == "catkin":
                     owner = "std_msgs"
-                if not owner and field.type not in _ROS1_PRIMITIVE and "<" not in field.type:
+                if not owner and field.type not in primitive and "<" not in field.type:
                     names = {i.name for i in package.digest.interfaces}
                     if field.type not in names and field.type not in seen:
                         seen.add(field.type)
-                        yield Diagnostic(_place_of(interface, field), field.type, package.name, kind="own type")
+                        data = {"replacement": full_name(field.type, "") if field.type in _FROM_ROS1 else ""}
+                        yield Diagnostic(_place_of(interface, field), field.type, package.name, data, "own type")
                     continue
                 if not owner or owner == package.name or owner in seen:
                     continue
