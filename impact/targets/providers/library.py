@@ -157,7 +157,7 @@ class VersionAnswer(NamedTuple):
     version: str
 
 
-# CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case.
+# CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case, with `-` for `_`.
 _LIBRARY_OF = {
     "OpenCV": "opencv",
     "Boost": "boost",
@@ -184,10 +184,9 @@ _SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
 
 def satisfies(target: Target, package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
-    name = _LIBRARY_OF.get(package)
-    if name is None:
-        return None
-    version = target.library(name)
+    if package not in _LIBRARY_OF and target.version(package) is not None:
+        return None  # a released package's own
+    version = target.library(_LIBRARY_OF.get(package) or package.lower().replace("_", "-"))
     if not version:
         return None
     if package == "OpenCV" and target.ros == 1 and target.distro == "kinetic":
