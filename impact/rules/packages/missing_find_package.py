@@ -11,7 +11,7 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident; note for what is not declared, since undeclared-package reports it.
+    may come along by accident, and for those of tests; note for what is not declared, since undeclared-package reports it.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -20,7 +20,7 @@ Use instead
     find_package(angles REQUIRED)
 
 Not reported
-    Packages that come with another one that is found; headers of the C and C++ libraries.
+    Packages that come with another one that is found; headers of the C and C++ libraries; tests in ROS 1.
 """
 
 from collections.abc import Iterator
@@ -86,7 +86,8 @@ def missing_find_package(view: TargetView, package: Package):
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
     linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
     for need in view.weighed(package):
-        if need.how != "include" or need.role != "build" or not need.certain:
+        tested = need.role == "test" and bool(need.targets) and view.built("test")
+        if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
             continue
         reached = built if shipped.intersection(need.targets) else reachable
         if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
@@ -105,7 +106,7 @@ def missing_find_package(view: TargetView, package: Package):
             continue
         seen.add(name)
         counts = name in view.declared(package) and ros and not header_only
-        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
+        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else system_libraries().folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in _list_given(package, need)):
             doubts = (Doubt.INCOMPLETE,)
