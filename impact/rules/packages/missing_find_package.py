@@ -11,7 +11,8 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident, and for those of tests; note for what is not declared, since undeclared-package reports it.
+    may come along by accident, and for those of tests; note for what is not declared, since undeclared-package reports
+    it.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -89,7 +90,7 @@ def missing_find_package(view: TargetView, package: Package):
         tested = need.role == "test" and bool(need.targets) and view.built("test")
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
             continue
-        reached = built if shipped.intersection(need.targets) else reachable
+        reached = built if shipped.intersection(need.targets) and not tested else reachable
         if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
             continue
         name = next((p.name for p in need.providers if p.name in closure), None)
