@@ -21,7 +21,8 @@ Use instead
     find_package(angles REQUIRED)
 
 Not reported
-    Packages that come with another one that is found; headers of the C and C++ libraries; tests in ROS 1.
+    Packages that come with another one that is found; headers of the C and C++ libraries; tests in ROS 1, and where
+    ament_lint_auto or ament_auto finds what is declared for them.
 """
 
 from collections.abc import Iterator
@@ -72,6 +73,8 @@ def missing_find_package(view: TargetView, package: Package):
     built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
     closure = view.closure(package)
+    # ament_auto and ament_lint_auto find all that is declared for tests.
+    finds_tested = any(f.how in ("ament_auto", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):
@@ -87,7 +90,7 @@ def missing_find_package(view: TargetView, package: Package):
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
     linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
     for need in view.weighed(package):
-        tested = need.role == "test" and bool(need.targets) and view.built("test")
+        tested = need.role == "test" and bool(need.targets) and view.built("test") and not finds_tested
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
             continue
         reached = built if shipped.intersection(need.targets) and not tested else reachable
