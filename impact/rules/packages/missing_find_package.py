@@ -11,7 +11,8 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident; note for what is not declared, since undeclared-package reports it.
+    may come along by accident, and for those of tests; note for what is not declared, since undeclared-package reports
+    it.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -20,7 +21,8 @@ Use instead
     find_package(angles REQUIRED)
 
 Not reported
-    Packages that come with another one that is found; headers of the C and C++ libraries.
+    Packages that come with another one that is found; headers of the C and C++ libraries; tests in ROS 1, and where
+    ament_lint_auto or ament_auto finds what is declared for them.
 """
 
 from collections.abc import Iterator
@@ -71,6 +73,8 @@ def missing_find_package(view: TargetView, package: Package):
     built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
     closure = view.closure(package)
+    # ament_auto and ament_lint_auto find all that is declared for tests.
+    finds_tested = any(f.how in ("ament_auto", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):
@@ -86,9 +90,10 @@ def missing_find_package(view: TargetView, package: Package):
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
     linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
     for need in view.weighed(package):
-        if need.how != "include" or need.role != "build" or not need.certain:
+        tested = need.role == "test" and bool(need.targets) and view.built("test") and not finds_tested
+        if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
             continue
-        reached = built if shipped.intersection(need.targets) else reachable
+        reached = built if shipped.intersection(need.targets) and not tested else reachable
         if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
             continue
         name = next((p.name for p in need.providers if p.name in closure), None)
@@ -105,7 +110,7 @@ def missing_find_package(view: TargetView, package: Package):
             continue
         seen.add(name)
         counts = name in view.declared(package) and ros and not header_only
-        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE,)
+        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else system_libraries().folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in _list_given(package, need)):
             doubts = (Doubt.INCOMPLETE,)

@@ -28,6 +28,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
+from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
 from .absent_paths import is_absent
 from .install_rules import list_installing
@@ -38,6 +39,7 @@ from .install_rules import list_installing
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
+        "target": Text("install(TARGETS) names `{subject}`, which is no target, so CMake stops", "add it, or drop it"),
         "no destination": Text("install({kind}) has no {subject}, at which CMake stops", "add it"),
         "symlinks": Text(
             "`colcon build --symlink-install` takes `{subject}` for the name of a folder", "write the folder itself"
@@ -56,6 +58,7 @@ from .install_rules import list_installing
 def nonexistent_install(view: TargetView):
     for package, installs in list_installing(view):
         yield from _list_absent(view, package, installs)
+        yield from _list_absent_targets(view, package, installs)
         yield from _list_unset(view, package)
 
 
@@ -80,6 +83,22 @@ def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 continue
             if is_absent(view, package, path):
                 yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
+
+
+def _list_absent_targets(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
+    """Targets that nothing in the package adds, or only where an option is set that is not set by default."""
+    build = package.build
+    if build.unresolved or any(t.kind in ("external", "fetched") or t.name.endswith("()") for t in build.targets):
+        return  # what is not read may add it
+    added = [t for t in build.targets if t.kind != "unknown"]
+    for install in installs:
+        if install.kind != "targets" or not view.certain(install.conditions):
+            continue
+        for item in install.items:
+            own = [t for t in added if t.name == item]
+            if re.search(r"[$*<]", item) or any(view.active(t.conditions) for t in own):
+                continue
+            yield Diagnostic(install.at, item, package.name, kind="target")
 
 
 def _may_be_empty(package, path: str) -> bool:
