@@ -30,7 +30,8 @@ def list_undefined(
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
         for item in facts.imports:
             meant = modules.absolute(path, item) if item.level else item.module
-            if modules.lacks(meant) or (not item.level and modules.is_meant_by(item)):
+            program = path if facts.interpreter else ""
+            if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
             module = modules.find(path, item) if item.names and "*" not in item.names else None
@@ -156,10 +157,14 @@ class _Modules:
                     return True
         return False
 
-    def lacks(self, module: str) -> bool:
-        """Whether a module surely is to be one of the package, by its first name, and there is none."""
-        rest = module.split(".")[1:]
+    def lacks(self, module: str, program: str = "") -> bool:
+        """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
+        that imports it where that is started, which finds the folders beside it."""
+        head, *rest = module.split(".")
         meant = self._meant(module) if rest else set()
+        beside = posixpath.join(posixpath.dirname(program), head)
+        if rest and program and beside in self._folders and head not in sys.stdlib_module_names:
+            meant.add("/".join((beside, *rest)))
         if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
             return False
         there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
