@@ -125,8 +125,8 @@ class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3. plain:
-    the first line of the file says that `python` runs it, which Python 2 may be."""
+    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3,
+    or NO_PYTHON. plain: the first line of the file says that `python` runs it, which Python 2 may be."""
 
     needs: int
     what: str
@@ -502,6 +502,9 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        for path, file in setup if self.build_type in ("ament_python", "catkin") else ():
+            if self.inside(path) == "setup.py" and file.python is not None:
+                syntax.extend(_list_syntax(path, "build", file.python))
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -1130,11 +1133,7 @@ class _Join:
                         names.append(
                             NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions)
                         )
-            syntax.extend(SyntaxUse(2, p.message, At(path, p.line), role) for p in facts.python2_only)
-            if facts.needs is not None:
-                minor, line, what = facts.needs
-                plain = "python" in facts.interpreter and "python3" not in facts.interpreter
-                syntax.append(SyntaxUse(minor, what, At(path, line), role, plain))
+            syntax.extend(_list_syntax(path, role, facts))
         return imports, names, syntax, modules
 
     def python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
@@ -1217,6 +1216,16 @@ class _Join:
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
+
+
+def _list_syntax(path: str, role: str, facts: PythonFile) -> Iterator[SyntaxUse]:
+    """The syntax of a file that some Python refuses."""
+    for problem in facts.python2_only:
+        yield SyntaxUse(2, problem.message, At(path, problem.line), role)
+    if facts.needs is not None:
+        minor, line, what = facts.needs
+        plain = "python" in facts.interpreter and "python3" not in facts.interpreter
+        yield SyntaxUse(minor, what, At(path, line), role, plain)
 
 
 def _list_interpreted(facts: CMakeFile) -> Iterator[str]:

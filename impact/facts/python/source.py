@@ -18,6 +18,9 @@ from .bound import scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .uses import FieldUse, PythonUse
 
+NO_PYTHON = 1000
+"""The minor version of Python 3 that syntax needs which this interpreter refuses and nothing explains."""
+
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """imports, attributes and references in the order of the source.
@@ -25,11 +28,11 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python2_only: (line, what) of syntax that Python 3 refuses (print statement, except X, e, backticks ...), found when
     the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
-    has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
-    `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of interfaces.
-    words: see words_of(). unbound: names that nothing in the file binds, and methods, with a
-    dot before, that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can
-    import from it; empty where that cannot be told, and two spaces where there are none.
+    has and Python 2 has not; NO_PYTHON), or None. interpreter: the first line when it is a `#!` that names python.
+    main: has an `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of
+    interfaces. words: see words_of(). unbound: names that nothing in the file binds, and methods, with a dot before,
+    that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can import from it;
+    empty where that cannot be told, and two spaces where there are none.
     """
 
     imports: tuple[Import, ...]
@@ -50,16 +53,20 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class PythonSource(NamedTuple):
     """A source and its syntax tree. text: decoded, with `\\n` as the end of line. parsed: what the tree was made from:
     the text, or where Python 2 was rewritten the same lines with other words. tree: None for what does not parse.
-    python2_only: as in PythonFile, of a text that was refused."""
+    python2_only: as in PythonFile, of a text that was refused. refused: the line at which this interpreter refuses what
+    is meant to be Python 3, or 0."""
 
     text: str
     parsed: str
     tree: ast.Module | None
     python2_only: tuple[Problem, ...]
     problems: tuple[Problem, ...]
+    refused: int = 0
 
 
 _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
+# What is no Python and not meant to be: places that a generator fills in, commands of a notebook.
+_TEMPLATE = re.compile(r"@\w+@|@[({\[]|\$|\{%|<%|\{\{\s*[\w.]+\s*\}\}|^\s*[%!]\s*\w", re.MULTILINE)
 _SHEBANG = re.compile(r"#!.*python")
 _IMPORT_LINE = re.compile(
     r"^(?P<indent>[ \t]*)(?:import[ \t]+(?P<modules>[\w., \t]+)"
@@ -140,6 +147,8 @@ def read(data: bytes) -> PythonSource:
             line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
             what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
             problems = (*problems, Problem(line, f"not parsed: {what}"))
+            if isinstance(error, SyntaxError) and not _TEMPLATE.search(python2.mask(text)):
+                return PythonSource(text, rewritten, tree, old, problems, line)
         return PythonSource(text, rewritten, tree, old, problems)
 
 
@@ -148,7 +157,7 @@ def extract(data: bytes) -> PythonFile:
 
     Where the file cannot be parsed, imports are read line by line and all else is left out.
     """
-    text, parsed, tree, old, problems = read(data)
+    text, parsed, tree, old, problems, refused = read(data)
     first_line = text.split("\n", 1)[0]
     interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
     if tree is not None:
@@ -181,6 +190,7 @@ def extract(data: bytes) -> PythonFile:
         attributes=(),
         references=(),
         python2_only=old,
+        needs=(NO_PYTHON, refused, "SyntaxError") if refused else None,
         interpreter=interpreter,
         main="__main__" in text,
         problems=problems,

@@ -60,7 +60,7 @@ def python_packages(files: Iterable[str]) -> set[str]:
 def uses_of(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
     """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.
     Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
-    one and has not changed, and `name` for any other name."""
+    one, or a constant, and has not changed, and `name` for any other name."""
     told: set[str] = set()
     for item in facts.imports:
         head = item.module.partition(".")[0]
@@ -74,10 +74,13 @@ def uses_of(facts: PythonFile, own: frozenset[str], changing: Changing) -> Itera
                 told.add(name)
                 yield PythonUse(name, "from", item.line, item.column, None, "", item.lazy, True, item.conditions)
     for attribute in facts.attributes:
-        if attribute.text.partition(".")[0] not in own and changing.concerned(attribute.text):
+        head, *_, word = attribute.text.split(".")
+        concerned = changing.concerned(attribute.text)
+        constant = word.isupper() and attribute.text.count(".") > 1 and attribute.text not in told
+        if head not in own and (concerned or (constant and changing.stored(head))):
             yield PythonUse(
-                attribute.text, "name", attribute.line, attribute.column, None, "", attribute.lazy, True,
-                attribute.conditions,
+                attribute.text, "name" if concerned else "from", attribute.line, attribute.column, None, "",
+                attribute.lazy, True, attribute.conditions,
             )  # fmt: skip
     for use in facts.uses:
         if use.name[0] != "." and use.name.partition(".")[0] not in own and changing.concerned(use.name):

@@ -29,8 +29,10 @@ def list_undefined(
         for use in facts.unbound:
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
         for item in facts.imports:
-            if not item.level and (modules.lacks(item.module) or modules.is_meant_by(item)):
-                yield path, msgspec.structs.replace(item, module="", names=(item.module,))
+            meant = modules.absolute(path, item) if item.level else item.module
+            program = path if facts.interpreter else ""
+            if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
+                yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
             module = modules.find(path, item) if item.names and "*" not in item.names else None
             bound = files[module].bound if module is not None else ""
@@ -155,10 +157,14 @@ class _Modules:
                     return True
         return False
 
-    def lacks(self, module: str) -> bool:
-        """Whether a module surely is to be one of the package, by its first name, and there is none."""
-        rest = module.split(".")[1:]
+    def lacks(self, module: str, program: str = "") -> bool:
+        """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
+        that imports it where that is started, which finds the folders beside it."""
+        head, *rest = module.split(".")
         meant = self._meant(module) if rest else set()
+        beside = posixpath.join(posixpath.dirname(program), head)
+        if rest and program and beside in self._folders and head not in sys.stdlib_module_names:
+            meant.add("/".join((beside, *rest)))
         if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
             return False
         there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
@@ -169,6 +175,17 @@ class _Modules:
         head, *rest = module.split(".")
         roots = self._roots.get(head, ()) if head not in sys.stdlib_module_names else ()
         return {"/".join((root, *rest)) for root in roots}
+
+    def absolute(self, path: str, item: Import) -> str:
+        """The module that a relative import names, from its outermost package on; empty where that is not known."""
+        folder = path
+        for _ in range(item.level):
+            folder = posixpath.dirname(folder)
+        for several in self._roots.values():
+            for root in several:
+                if item.module and f"{folder}/".startswith(f"{root}/") and len(several) == 1:
+                    return f"{folder[len(posixpath.dirname(root)) :].lstrip('/').replace('/', '.')}.{item.module}"
+        return ""
 
     def find(self, path: str, item: Import) -> str | None:
         """The file that an import names, None where it may be another one or none."""

@@ -3,8 +3,8 @@
 What it does
     Reports imports and uses of names that the target's version of the providing package does not have, and an earlier
     or later version of it has: modules, what is imported from them, attributes, and members of objects whose class
-    shows; and imports of names that no version of the package has anywhere. What each version has was read from its
-    sources.
+    shows; and imports of names, and constants of classes, that no version of the package has anywhere. What each
+    version has was read from its sources.
 
 Why it breaks
     Python raises ImportError or AttributeError when the line is reached; where it is an import, when the program or

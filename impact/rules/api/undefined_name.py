@@ -59,7 +59,7 @@ def undefined_name(view: TargetView):
             if use.module or not _is_of_python2(name):
                 doubts = (*_doubts_of_import(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
                 # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
-                together = (Together(use.at.path),) if kind == "undefined" else ()
+                together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 

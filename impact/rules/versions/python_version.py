@@ -4,6 +4,7 @@ What it does
     Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python, as
     well as annotations that it evaluates and cannot (`list[int]`, `int | None`). On a target with Python 2 it reports
     what the newest distro's Python 3 does not accept, and syntax of Python 3 in files whose first line names `python`.
+    Setup files that the build runs are included, and lines that no Python accepts, except in templates.
 
 Why it breaks
     The node stops with a SyntaxError, or a TypeError for annotations, before it runs.
@@ -19,8 +20,10 @@ Use instead
     except urllib.error.URLError as e:
 """
 
+import sys
 from collections.abc import Iterator
 
+from ...facts.python.source import NO_PYTHON
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Target
@@ -42,6 +45,7 @@ from ..rule import Diagnostic, Text, doubts_of_place, rule
             "{subject} needs Python {needs}, but the target has {version}",
             "use syntax that the Python of every target accepts",
         ),
+        "none": Text("Python {version} cannot read the file from this line on", "correct the syntax"),
     },
 )
 def python_version(view: TargetView):
@@ -51,12 +55,16 @@ def python_version(view: TargetView):
             if use.needs == 2 and use.at.path not in reported:
                 reported.add(use.at.path)
                 yield Refused(use, use.what, "python 2")
+            elif use.needs == NO_PYTHON:
+                # What a newer Python than this one may read is not known.
+                if view.target.python_major >= 3 and target.python <= sys.version_info.minor:
+                    yield Refused(use, use.what, "none")
             elif use.needs > max(2, target.python) and view.target.python_major >= 3:
                 yield Refused(use, use.what, "newer", use.needs)
 
     yield from report_refused(view, find)
     for package in view if view.target.python_major == 2 else ():
         for use in package.digest.syntax:
-            if use.needs != 2 and use.plain:
+            if use.needs not in (2, NO_PYTHON) and use.plain:
                 doubts = doubts_of_place(view, use.role)
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)

@@ -142,7 +142,8 @@ class PythonOffers:
         )
 
     def _imported(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
-        """A name that is imported from a module that is there, and that no version knows in any module."""
+        """A name that is imported from a module that is there, or taken of a class that is, and that no version knows
+        anywhere."""
         history = self._offers.history(offer.package)
         module, _, word = use.name.rpartition(".")
         if history is None or word in history.python_words or offer.stored in offer.line.approximate:
@@ -150,7 +151,10 @@ class PythonOffers:
         if not offer.exact and offer.place + 1 == len(offer.line.versions):
             return None  # newer than all that were read, and may have got it
         names = self.names(offer.package, offer.stored)
-        if names is None or module not in names.modules or names.find(use.name) is not None:
+        if names is None or names.find(use.name) is not None:
+            return None
+        of = names.find(module)
+        if module not in names.modules and (of is None or of.kind != "class"):
             return None
         return self._found("not yet", offer, use.name, sure=offer.exact, form="never")
 

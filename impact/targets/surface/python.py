@@ -1,6 +1,7 @@
 """What a version of a package offers to Python: names, with re-exports followed, and what changed of them."""
 
 import builtins
+import enum
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
@@ -27,6 +28,8 @@ UNKNOWN = PythonName("", "unknown")
 # Methods that every object has, so that one that is taken away is still there, and those that nobody calls by name.
 _OBJECT = frozenset((*dir(object), "__del__", "__slots__", "__post_init__", "__hash__", "__bool__"))
 _NO_ATTRIBUTES = frozenset(("object", "ABC", "abc.ABC", "Protocol", "typing.Protocol", "Generic", "typing.Generic"))
+# The classes of enumerations, which have no members but those that are written.
+_ENUMS = {f"enum.{name}": getattr(enum, name) for name in ("Enum", "Flag", "IntEnum", "IntFlag")}
 _DEPTH = 12
 
 
@@ -184,6 +187,8 @@ class SurfaceNames:
         if not re.fullmatch(r"[\w.]+", base):
             return UNKNOWN
         found = self.base(module, inside, base)
+        if (known := _ENUMS.get(base if base in _ENUMS else found.where if found is not None else "")) is not None:
+            return PythonName(f"{base}.{name}", "external") if hasattr(known, name) or name[0] == "_" else None
         if found is not None and found.kind == "class":
             return self.member(found, name, depth + 1)
         known = getattr(builtins, base, None)

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.python.source import PythonFile, extract
+from rosimpact.impact.facts.python.source import NO_PYTHON, PythonFile, extract
 
 
 def conditions_of(item):
@@ -287,7 +287,8 @@ def test_needs_of_newer_syntax(text, minor):
     if sys.version_info >= (3, minor):
         assert facts.needs and facts.needs[:2] == (minor, 1)
     else:
-        assert facts.needs is None and len(facts.problems) == 1 and facts.python2_only == ()
+        assert facts.needs == (NO_PYTHON, 1, "SyntaxError")
+        assert len(facts.problems) == 1 and facts.python2_only == ()
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 14), reason="this interpreter may read it")
