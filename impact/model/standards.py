@@ -105,8 +105,8 @@ def find_failing_standard(
     have = max((standard_year(number) for number in set_for), default=default)
     if have is None:
         return None
-    if not set_for and any(u.kind == "command" for u in build.uses):
-        return None  # a macro of another package may set it
+    if not set_for and may_be_set_elsewhere(view, package):
+        return None
     if refused_from:
         return f"C++{have % 100:02d}" if have >= refused_from else None
     if max(have, _find_raised(view)) >= needs or not use.targets or use.role != "build":

@@ -138,5 +138,6 @@ def _list_reviewed_of(
         data = {**data_of(found), "standard": standard, "advice": change.new}
         if standard:
             data["since"] = ""  # the version is bound to the standard
+            found = found._replace(evidence=None)
         kind = "reviewed" if found.earlier else "reviewed early"
         yield diagnose(found, use.at, shown, package.name, doubts, kind=kind, data=data)

@@ -2,18 +2,18 @@
 
 What it does
     Compares what a package exports with what is there: include directories that do not exist or whose headers no rule
-    installs, libraries that no command makes or that are not installed, and system libraries under a name whose
-    variables nothing sets.
+    installs, libraries that no command makes or that are not installed, system libraries under a name whose variables
+    nothing sets, and packages of ament_export_dependencies() that nobody has, declares or looks for.
 
 Why it breaks
     The package's own configuration stops, or that of every package that finds it: the exported configuration names a
-    library that was never built.
+    library that was never built, or finds a package that nobody has.
 
 Severity
     error where the package's own configuration stops (an include directory that does not exist), for a library of its
     own that catkin_package() exports and no command makes, and for a library that is exported and not installed;
-    warning where dependants are not linked to it, for headers that are not installed, or a misspelt name in DEPENDS;
-    note for other names in DEPENDS.
+    warning where dependants are not linked to it, for headers that are not installed, a package that nobody has, or a
+    misspelt name in DEPENDS; note for other names in DEPENDS.
 
 Example
     ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
@@ -30,6 +30,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.misspelling import SpellingIndex
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import variables
@@ -68,6 +69,10 @@ from .install_rules import is_installed
             "the exported library `{subject}` is never built, so dependants are not linked to it",
             "export what the package builds, or drop it",
         ),
+        "no package": Text(
+            "`{subject}` is no package that is known, declared or looked for, so find_package({package}) stops",
+            "leave it out of ament_export_dependencies",
+        ),
     },
 )
 def nonexistent_export(view: TargetView, package: Package):
@@ -78,6 +83,7 @@ def nonexistent_export(view: TargetView, package: Package):
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_of_ament(view, package, ament.exports)
+        yield from _list_unknown_packages(view, package, ament.dependencies)
 
 
 def _list_directories(view: TargetView, package):
@@ -185,3 +191,20 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
             yield Diagnostic(export.at, item, package.name, kind="not installed")
         elif item not in names and (not view.cmake(item) or item == package.name):
             yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))
+
+
+def _list_unknown_packages(view: TargetView, package: Package, dependencies: frozenset[str]) -> Iterator[Diagnostic]:
+    """Packages that dependants look for and nothing else speaks of."""
+    if package.build.unresolved:
+        return
+    known = {package.name, *view.declared(package), *(f.name for f in package.build.found)}
+    known |= {*view.workspace.find_modules, *(i for r in package.build.installs if r.kind == "export" for i in r.items)}
+    near = SpellingIndex(known)
+    for name in sorted(dependencies - known):
+        if view.is_package(name) or view.cmake(name) or view.private(name) or view.target.known_key(name):
+            continue  # what has the name of a system package may bring it
+        if near.nearest(name) or any(name.startswith(first) and name[len(first) :] in known for first in known):
+            continue  # misspelt-cmake-name says it
+        export = next(e for e in package.build.exports if e.item == name and e.how == "ament_export_dependencies")
+        if view.certain(export.conditions):
+            yield Diagnostic(export.at, name, package.name, kind="no package", doubts=(Doubt.DISTURBS,))

@@ -1,8 +1,9 @@
 """unexported-include-directory: dependants do not get the folder of installed headers, or of what these include.
 
 What it does
-    Reports ament packages that install headers and a library but export neither include directories nor a target, where
-    another package of the workspace includes the headers; that export only the include directories of a library which
+    Reports ament packages that install headers but export neither include directories nor a target, where they install
+    a library too and another package of the workspace includes the headers, or where headers are all that they build
+    and install; that export only the include directories of a library which
     nothing in the package links or loads; and header-only packages whose installed headers include a system library
     outside the compiler's default path that they do not export.
 
@@ -59,7 +60,7 @@ def unexported_include_directory(view: TargetView, package: Package):
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    """Headers and a library that are installed, and nothing that tells dependants where."""
+    """Headers that are installed, with a library or alone, and nothing that tells dependants where."""
     first = package.build.ament_package
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     if exports_something(exports):
@@ -67,16 +68,26 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if not package.digest.public_headers or any(f.how == "ament_auto" for f in package.build.found) or first is None:
         return
     installed = list_installed_targets(package)
-    if not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
+    alone = _has_headers_alone(view, package)
+    if not alone and not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
         return
     if not any("/include/" in f"/{h}" for h in package.digest.public_headers):
         return
     # Plugins of a base class of its own: it is there for others to include.
     own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
-    if package.name not in view.workspace.includers and not own_base:
+    if package.name not in view.workspace.includers and not own_base and not alone:
         return
     subject = "ament_export_include_directories"
     yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
+
+
+def _has_headers_alone(view: TargetView, package: Package) -> bool:
+    """Whether headers are all that a package builds and installs."""
+    build = package.build
+    if build.unresolved or build.generated or any(t.kind != "test" for t in build.targets):
+        return False
+    installs = [i for i in build.installs if view.active(i.conditions)]
+    return bool(installs) and all(i.destination.lstrip("/").partition("/")[0] == "include" for i in installs)
 
 
 def _list_without_library(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:

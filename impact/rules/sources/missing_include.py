@@ -3,8 +3,8 @@
 What it does
     Reports names of the standard library, of Boost and of ROS packages (types, and tf2's conversions) in files that do
     not include the header that offers them, when the headers that they do include stopped bringing it along; names of
-    Boost that none of them brings, where some of them are Boost's; and types of messages, services and actions whose
-    header none of them brings.
+    Boost that none of them brings, where some of them are Boost's; types of messages, services and actions whose header
+    none of them brings; and such types that another package of the workspace, which has interfaces alone, lacks.
 
 Why it breaks
     Some other header brought it. The next compiler or library version stops including it, and the build fails on the
@@ -26,9 +26,9 @@ Use instead
 
 Not reported
     Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
-    something unknown reaches; types that a file of the package announces itself; types of the workspace's own
-    interfaces; names of the standard library that packages found bring under a later C++ standard which they ask for;
-    macros that a file of the workspace defines.
+    something unknown reaches; types that a file of the package announces itself; types of interfaces that the workspace
+    has; names of the standard library that packages found bring under a later C++ standard which they ask for; macros
+    that a file of the workspace defines.
 """
 
 from ...model.cmake.build import for_tests
@@ -36,6 +36,7 @@ from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.providers.message_headers import type_in
 from ..rule import Diagnostic, Doubt, Insert, Text, Together, rule
 
 _LOST = "`{name}` is used without `<{subject}>`, "
@@ -49,6 +50,10 @@ _LOST = "`{name}` is used without `<{subject}>`, "
             _LOST + "and nothing that is included brings it along with {by} {version}[[ of {horizon}]]",
             "#include <{subject}>",
         ),
+        "no interface": Text(
+            "`{subject}` is used, but `{owner}` has no such interface, and nothing that is included declares it",
+            "define the interface, or use one that `{owner}` has",
+        ),
     },
 )
 def missing_include(view: TargetView):
@@ -59,6 +64,12 @@ def missing_include(view: TargetView):
         reported: set[tuple[str, str]] = set()
         for need in package.digest.needed_headers:
             if need.role == "aside" or need.name in defined or not view.active(need.conditions):
+                continue
+            if owner := _find_lacking_owner(view, package, need):
+                if ("", need.name) not in reported:
+                    reported.add(("", need.name))
+                    doubt = Doubt.INCOMPLETE if places.compiles(need) else Doubt.UNCOMPILED
+                    yield Diagnostic(need.at, need.name, package.name, {"owner": owner}, "no interface", (doubt,))
                 continue
             lost = headers.find(need)
             if lost is None or (need.at.path, lost.header) in reported:
@@ -79,6 +90,21 @@ def missing_include(view: TargetView):
                 together=(Together(f"{lost.by} of {horizon}", True),) if not lost.now else (),
                 fix=_include(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
+
+
+def _find_lacking_owner(view: TargetView, package: Package, need: NeededHeader) -> str:
+    """The other package of the workspace that has interfaces alone, and not the one that a type would be made from."""
+    made, workspace = type_in(need.name), view.workspace
+    owner = workspace.packages.get(made.package) if made is not None and made.ros == view.target.ros else None
+    if made is None or owner is None or owner.name == package.name or not workspace.interface_names.get(owner.name):
+        return ""
+    if owner.digest.source_targets or owner.build.unresolved:
+        return ""  # it may have classes of its own
+    if any(g.how == "reconfigure" for g in owner.build.generated):
+        return ""
+    name, has = made.name.rpartition("::")[2], workspace.interface_names[owner.name]
+    known = name in has or (made.ros == 1 and workspace.is_interface_header(owner.name, f"{name}.h"))
+    return "" if known else owner.name
 
 
 class _Places:
