@@ -157,7 +157,7 @@ class VersionAnswer(NamedTuple):
     version: str
 
 
-# CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case, with `-` for `_`.
+# CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case, with `-`.
 _LIBRARY_OF = {
     "OpenCV": "opencv",
     "Boost": "boost",
