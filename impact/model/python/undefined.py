@@ -20,8 +20,9 @@ def list_undefined(
     files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]
 ) -> Iterator[tuple[str, Import]]:
     """Such names, each as its import with the path it stands in; the module is empty for names that the file uses
-    itself, and for modules, whose names have a dot. files: the Python files of a package by their paths. others: what
-    modules and libraries of the package are called. paths: all its files, of which modules may be built."""
+    itself, and for modules, whose names have a dot. With them star imports of a package from itself. files: the Python
+    files of a package by their paths. others: what modules and libraries of the package are called. paths: all its
+    files, of which modules may be built."""
     modules = _Modules(files, others, paths)
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
@@ -34,7 +35,11 @@ def list_undefined(
             if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
-            module = modules.find(path, item) if item.names and "*" not in item.names else None
+            module = modules.find(path, item) if item.names else None
+            if "*" in item.names:
+                if module == path and not item.level and path.endswith("/__init__.py"):
+                    yield path, item
+                continue
             bound = files[module].bound if module is not None else ""
             for name in item.names if bound and module != path else ():
                 if f" {name} " not in bound and name not in others and not modules.may_be_built(name):

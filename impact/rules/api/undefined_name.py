@@ -4,8 +4,8 @@ What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
     imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
     name, or from a package of an unknown name in place of its own; functions of entry points that their module does not
-    define; and builtins (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the
-    target has Python 3.
+    define; star imports of a package from itself, which Python 2 took from a module in it; and builtins (`raw_input`,
+    `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
 
 Why it breaks
     Python raises a NameError, ImportError or AttributeError when it reaches the line.
@@ -47,6 +47,9 @@ from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
         ),
         "module": Text("the package has no module `{subject}`", "correct the module path in the import"),
         "module of another": Text("`{owner}` has no module `{subject}`", "correct the module path in the import"),
+        "itself": Text(
+            "`from {module} import *` in `{module}` itself gives nothing in Python 3", "write `from .{module} import *`"
+        ),
         "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
     },
 )
@@ -56,7 +59,11 @@ def undefined_name(view: TargetView):
             kind = "imported" if use.module else "module" if "." in name.lstrip(".") else "undefined"
             if kind != "undefined" and _may_be_of_another(view, package, use.module or name):
                 continue
-            if use.module or not _is_of_python2(name):
+            if name == "*":
+                if view.target.python_major >= 3:
+                    doubts = (*_doubts_of_import(view, use), Doubt.LATE)
+                    yield Diagnostic(use.at, use.module, package.name, {"module": use.module}, "itself", doubts)
+            elif use.module or not _is_of_python2(name):
                 doubts = (*_doubts_of_import(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
                 # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
                 together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
