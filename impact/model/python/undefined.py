@@ -150,15 +150,17 @@ class _Modules:
 
     def is_meant_by(self, item: Import) -> bool:
         """Whether an import from a package of another name, all of whose names a module of this one at the same place
-        binds, seems to mean it."""
+        binds, seems to mean it. Where that module has them from there itself, the other package is one."""
         head, _, rest = item.module.partition(".")
         if not rest or not item.names or head in self._others or head in sys.stdlib_module_names:
             return False
         for roots in self._roots.values():
             for root in roots:
                 stem = f"{root}/{rest.replace('.', '/')}"
-                bound = next((f.bound for f in map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py")) if f), "")
-                if all(f" {name} " in bound for name in item.names):
+                file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+                if file is None or any(other.module == item.module for other in file.imports):
+                    continue
+                if all(f" {name} " in file.bound for name in item.names):
                     return True
         return False
 

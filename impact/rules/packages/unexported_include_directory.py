@@ -3,9 +3,9 @@
 What it does
     Reports ament packages that install headers but export neither include directories nor a target, where they install
     a library too and another package of the workspace includes the headers, or where headers are all that they build
-    and install; that export only the include directories of a library which
-    nothing in the package links or loads; and header-only packages whose installed headers include a system library
-    outside the compiler's default path that they do not export.
+    and install; that export only the include directories of a library which nothing in the package links or loads; and
+    packages of headers alone, or of catkin with a library, whose exported headers include a system library outside the
+    compiler's default path that they do not export.
 
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".
@@ -53,6 +53,7 @@ from .include_folders import OFF_PATH
 )
 def unexported_include_directory(view: TargetView, package: Package):
     yield from _list_nothing(view, package)
+    yield from _list_of_catkin(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_off_path(view, package, ament)
@@ -127,3 +128,26 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
         seen.add(name)
         data = {"header": need.subject}
         yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))
+
+
+def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """System libraries off the compiler's path that exported headers of a catkin package with a library include."""
+    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    if not package.build.catkin_package or any("$" in e.item for e in exports):
+        return
+    if not {"include_dirs", "libraries"} <= {e.how for e in exports}:
+        return
+    reach = view.roles.found_with({e.item for e in exports if e.how in ("catkin_depends", "system_depends")})
+    handed = {e.item.lower() for e in exports if e.how == "system_depends"}
+    folders = tuple(f"{e.item.rstrip('/')}/" for e in exports if e.how == "include_dirs")
+    seen = set()
+    for need in view.weighed(package):
+        name = need.providers[0].name
+        if need.how != "include" or not need.certain or name not in OFF_PATH or name in seen:
+            continue
+        if not need.at.path.startswith(folders) or view.answered(need.providers, reach):
+            continue
+        if any(item.startswith(name[:5]) for item in handed):  # EIGEN3 is what CMake calls eigen
+            continue
+        seen.add(name)
+        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include directory", (Doubt.DISTURBS,))
