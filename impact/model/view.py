@@ -787,9 +787,9 @@ class TargetView:
         return not debian.startswith("lib") and not self.apt.knows(debian)
 
     def _is_unread_library(self, name: str) -> bool:
-        """Whether what a plain build, or the build of a library that a package carries, installs is not stored."""
-        carried = name.endswith("_vendor") and name not in self.workspace.packages
-        return carried or (self._is_plain_build(name) and self.offers.package(name) is None)
+        """Whether a plain build, or the build of a library that a package carries, installs what is not stored, or not
+        all of it."""
+        return self._is_plain_build(name) or (name.endswith("_vendor") and name not in self.workspace.packages)
 
     @cached_method
     def _is_plain_build(self, name: str) -> bool:
