@@ -758,7 +758,8 @@ class _Join:
         """The same in Python files that import the package which the row is about."""
         importing: dict[str, list[str]] = {}
         for path, facts in files.items():
-            for package in {item.module.split(".")[0] for item in facts.imports} & self.watched.modules.keys():
+            imported = {item.module.split(".")[0] for item in facts.imports if not item.level}
+            for package in imported & self.watched.modules.keys():
                 importing.setdefault(package, []).append(path)
         found = {p: self.look(paths, "searched_text", self.watched.in_python[p]) for p, paths in importing.items()}
         self.python_methods.update(name for each in found.values() for one in each.values() for name in one.functions)
@@ -1128,6 +1129,8 @@ class _Join:
                         )
                     )
             for item in facts.imports:
+                if item.level:
+                    continue  # the package's own
                 for text in (item.module, *(f"{item.module}.{n}" for n in item.names)):
                     if text in self.watched.python:
                         names.append(

@@ -168,6 +168,17 @@ SILENT = {
         ),
         ("package.xml", "<depend>ros1_bridge</depend>", ""),
     ),
+    "a relative import that is called like what another package had": Silent(
+        "removed-symbol",
+        ("humble",),
+        ament("ament_python_install_package(sled)", "buildtool_depend:ament_cmake_python", "exec_depend:launch")
+        | {
+            "sled/__init__.py": "from .launch.launcher import Launcher\n",
+            "sled/launch/__init__.py": "",
+            "sled/launch/launcher.py": "class Launcher:\n    pass\n",
+        },
+        ("sled/__init__.py", "from .launch", "from launch"),
+    ),
     "what every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),
