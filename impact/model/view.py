@@ -733,10 +733,14 @@ class TargetView:
         """Whether a header or its folder is called after something that the build downloads, or after a folder of the
         package that was not read, such as a submodule."""
         if package.name not in self._downloaded:
-            folder = f"{package.path}/" if package.path else ""
-            unread = (path.rpartition("/")[2] for path in self.workspace.unread if path.startswith(folder))
-            fetched = (t.name for t in package.build.targets if t.kind in ("fetched", "external"))
-            self._downloaded[package.name] = tuple(name.lower() for name in {*fetched, *unread} if name)
+            build, folder = package.build, f"{package.path}/" if package.path else ""
+            unread = {path for path in self.workspace.unread if path.startswith(folder)}
+            searched = (*(one for one, _ in build.include_dirs), *(one.item for one in build.links))
+            unread.update(one for one in searched if unread and "$" not in one and self.workspace.is_unread(one))
+            fetched = (t.name for t in build.targets if t.kind in ("fetched", "external"))
+            names = {*fetched, *(part for path in unread for part in path.removeprefix(folder).split("/"))}
+            first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - {"include", "src", "lib"})
+            self._downloaded[package.name] = tuple(one.group() for one in first if one and len(one.group()) > 2)
         downloaded = self._downloaded[package.name]
         return bool(downloaded) and any(part.startswith(downloaded) for part in header.lower().split("/"))
 
