@@ -779,7 +779,12 @@ class TargetView:
             self._opaque[package.name] = [
                 n for n in self.closure(package)
                 if n not in self.workspace.packages and not n.startswith("python")
-                and (bringing := [d for d in self.debian(n) if d.endswith("-dev") or self._is_unknown_collection(d)])
+                and (
+                    bringing := [
+                        d for d in self.debian(n)
+                        if d.endswith("-dev") or d.startswith("gazebo") or self._is_unknown_collection(d)
+                    ]
+                )
                 and (n.startswith("gazebo") or not self.providers.knows_system([n, *bringing]))
             ]  # fmt: skip
         stem = re.split(r"[^a-z]", wanted.lower())[0]
