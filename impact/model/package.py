@@ -35,7 +35,7 @@ from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .macros import Macros
-from .python.undefined import PythonOffer, list_undefined, list_undefined_functions, offer_python
+from .python.undefined import PythonOffer, list_siblings, list_undefined, list_undefined_functions, offer_python
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
@@ -502,9 +502,13 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        for path, file in setup if self.build_type in ("ament_python", "catkin") else ():
-            if self.inside(path) == "setup.py" and file.python is not None:
-                syntax.extend(_list_syntax(path, "build", file.python))
+        run_setup = {
+            path: file.python
+            for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())
+            if self.inside(path) == "setup.py" and file.python is not None
+        }
+        for path, facts in run_setup.items():
+            syntax.extend(_list_syntax(path, "build", facts))
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -560,7 +564,9 @@ class _Join:
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in (
                     *list_undefined(python, modules, self.files),
+                    *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
+                    *list_siblings(python, setup),
                 )
             ),
             python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),

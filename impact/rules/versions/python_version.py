@@ -75,5 +75,5 @@ def python_version(view: TargetView):
             doubts = doubts_of_place(view, use.role)
             if use.needs not in (2, NO_PYTHON) and use.plain:
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)
-            elif use.needs == 0 and not others:
+            elif use.needs == 0 and use.what.startswith("`print`") and not others:
                 yield Diagnostic(use.at, use.what, package.name, kind="print", doubts=(*doubts, Doubt.LATE))
