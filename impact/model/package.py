@@ -35,7 +35,14 @@ from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .macros import Macros
-from .python.undefined import PythonOffer, list_siblings, list_undefined, list_undefined_functions, offer_python
+from .python.undefined import (
+    PythonOffer,
+    list_siblings,
+    list_undefined,
+    list_undefined_functions,
+    list_unlisted,
+    offer_python,
+)
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
@@ -567,6 +574,7 @@ class _Join:
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),
+                    *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
                 )
             ),
             python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),

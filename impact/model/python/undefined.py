@@ -70,6 +70,32 @@ def list_siblings(
                 yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in named)
 
 
+UNLISTED = ".."
+"""The name that list_unlisted() gives to imports."""
+
+
+def list_unlisted(
+    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports of modules that lie in a Python package which setup() does not install, though it installs the outermost
+    one, each as an import of that package, lazy but for those in files that an entry point names. files, setup: as
+    above. The name of each is UNLISTED."""
+    modules = _Modules(files, (), ())
+    for path, file in setup:
+        folder, listed = posixpath.dirname(path), set(file.packages)
+        if not listed or "*" in listed or any(one.startswith(("packages", "arguments")) for one in file.unresolved):
+            continue
+        named = {place for _, module, *_ in file.entry_points for place in file.places_of(folder, module)}
+        roots = {posixpath.dirname(file.places_of(folder, name)[1]) for name in listed if "." not in name}
+        for importer, facts in files.items():
+            if posixpath.dirname(importer) in roots or not f"{importer}/".startswith(tuple(f"{r}/" for r in roots)):
+                for item in facts.imports:
+                    owners = {modules.package_of(place, roots) for place in modules.find_named(importer, item)}
+                    for owner in sorted(owners - listed - {""}):
+                        lazy = item.lazy or importer not in named
+                        yield importer, msgspec.structs.replace(item, module=owner, names=(UNLISTED,), lazy=lazy)
+
+
 class PythonOffer(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a package offers to Python code of others. modules: the names that each module binds, as PythonFile.bound.
     built: names of modules that may come from other files."""
@@ -225,6 +251,12 @@ class _Modules:
             if stem in self._stems and not stem.endswith("/__init__"):
                 yield self._stems[stem]
             yield from (self._stems[f"{stem}/{name}"] for name in item.names if f"{stem}/{name}" in self._stems)
+
+    def package_of(self, path: str, roots: Collection[str]) -> str:
+        """The Python package that a module lies in, below one of these folders; empty for another module."""
+        folder = posixpath.dirname(path)
+        root = next((one for one in roots if f"{folder}/".startswith(f"{one}/")), None)
+        return folder[len(posixpath.dirname(root)) :].strip("/").replace("/", ".") if root is not None else ""
 
     @cached_property
     def _stems(self) -> dict[str, str]:
