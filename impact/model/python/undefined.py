@@ -173,12 +173,14 @@ class _Modules:
         self._files, self._others, self._paths = files, others, paths
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name: dict[str, list[str]] = {}
-        # Folders with an __init__.py that lie in none such, by their names.
+        # Folders with an __init__.py that lie in none such, or in `src`, by their names.
         self._roots: dict[str, list[str]] = {}
         for path in files:
             self._by_name.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
             root = _stem_of(path)
-            if path.endswith("/__init__.py") and f"{posixpath.dirname(root)}/__init__.py" not in files:
+            around = posixpath.dirname(root)
+            outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
+            if path.endswith("/__init__.py") and outermost:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
