@@ -498,7 +498,8 @@ class _Join:
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
-        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
+        links = {target.name: {link.item for link in target.links} for target in self.build.targets}
+        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined}, links)
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
