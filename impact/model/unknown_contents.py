@@ -28,6 +28,7 @@ _WITH_INTERFACES = (
 FINDING = ("find_package", "catkin", "ament_auto", "ament_lint_auto")
 _SHORTEST = 3
 """Letters of a name by which something else is called after it."""
+_IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
 # Folders that are not called after what they hold.
 _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
 
@@ -108,14 +109,18 @@ class UnknownContents:
 
     @cached_method
     def _made_apart(self, package: Package) -> tuple[str, ...]:
-        """How names begin of what a package downloads, and of its folders that were not read."""
+        """How names begin of what a package downloads, and of its folders that were not read. A download is called
+        after its project, or one of the folders that it fills in the build is."""
         workspace, build = self._view.workspace, package.build
         folder = f"{package.path}/" if package.path else ""
         unread = {path for path in workspace.unread if path.startswith(folder)}
-        searched = (*(one for one, _ in build.include_dirs), *(one.item for one in build.links))
+        downloads = [target.name for target in build.targets if target.kind in ("external", "fetched")]
+        given = (*build.links, *(link for target in build.targets for link in target.links))
+        searched = {one for one, _ in build.include_dirs}.union(link.item for link in given)
         unread.update(one for one in searched if unread and "$" not in one and workspace.is_unread(one))
-        names = {target.name for target in build.targets if target.kind in ("external", "fetched")}
-        names.update(part for path in unread for part in path.removeprefix(folder).split("/"))
+        filled = [one for one in searched if downloads and _IN_BUILD.match(one)]
+        names = {part for path in (*unread, *filled) for part in path.removeprefix(folder).split("/")}
+        names.update(downloads, *(re.split(r"[-_]", name) for name in downloads))
         first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - _PLAIN_FOLDERS)
         return tuple({one.group() for one in first if one and len(one.group()) >= _SHORTEST})
 

@@ -119,15 +119,14 @@ def _of_include(view: TargetView, package: Package, need: Need, name: str) -> tu
 
 
 def _unknown(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
-    """INCOMPLETE where something that comes along has dependencies or contents that are not known, so that it may bring
-    what is needed."""
-    if view.unknown_contents.may_come_along(package, name, need.providers):
-        return (Doubt.INCOMPLETE,)
+    """What speaks against an error where something that comes along has dependencies or contents that are not known,
+    so that it may bring what is needed."""
     opaque = view.unknown_contents.list_opaque(package) if need.providers[0].kind == "system" else ()
-    if opaque:
-        # A key that installs no library itself is there for what it brings along.
-        collects = any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque))
-        return (Doubt.DISPENSABLE if collects else Doubt.INCOMPLETE,)
+    # A key that installs no library itself is there for what it brings along.
+    if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque)):
+        return (Doubt.DISPENSABLE,)
+    if opaque or view.unknown_contents.may_come_along(package, name, need.providers):
+        return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
 
