@@ -503,6 +503,8 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        by_commands = (path for use in self.build.uses for path in use.makes)
+        made = modules.union(part for path in by_commands for part in path.split("/"))
         for path, file in setup if self.build_type in ("ament_python", "catkin") else ():
             if self.inside(path) == "setup.py" and file.python is not None:
                 syntax.extend(_list_syntax(path, "build", file.python))
@@ -560,11 +562,11 @@ class _Join:
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in (
-                    *list_undefined(python, modules, self.files),
+                    *list_undefined(python, made, self.files),
                     *list_undefined_functions(python, setup),
                 )
             ),
-            python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),
+            python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),

@@ -83,10 +83,8 @@ class IncludedHeaders:
         found = view.lost_header(path)
         if found is None:
             return None
-        if found.form == "platform" and (
-            view.opaque_libraries(package, path) or view.blind(package) or view.may_be_downloaded(package, path)
-        ):
-            return HeaderLoss(None)  # something that comes along has contents that are not known
+        if found.form == "platform" and view.unknown_contents.may_hold(package, path):
+            return HeaderLoss(None)
         return HeaderLoss(found, found.form)
 
     def _find_row(self, path: str) -> ChangeInForce | None:
