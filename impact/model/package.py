@@ -35,7 +35,14 @@ from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .macros import Macros
-from .python.undefined import PythonOffer, list_undefined, list_undefined_functions, offer_python
+from .python.undefined import (
+    PythonOffer,
+    list_siblings,
+    list_undefined,
+    list_undefined_functions,
+    list_unlisted,
+    offer_python,
+)
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
@@ -505,9 +512,13 @@ class _Join:
         imports, python_names, syntax, modules = self.python(python)
         by_commands = (path for use in self.build.uses for path in use.makes)
         made = modules.union(part for path in by_commands for part in path.split("/"))
-        for path, file in setup if self.build_type in ("ament_python", "catkin") else ():
-            if self.inside(path) == "setup.py" and file.python is not None:
-                syntax.extend(_list_syntax(path, "build", file.python))
+        run_setup = {
+            path: file.python
+            for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())
+            if self.inside(path) == "setup.py" and file.python is not None
+        }
+        for path, facts in run_setup.items():
+            syntax.extend(_list_syntax(path, "build", facts))
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -563,7 +574,10 @@ class _Join:
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in (
                     *list_undefined(python, made, self.files),
+                    *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
+                    *list_siblings(python, setup),
+                    *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
                 )
             ),
             python_offer=offer_python(python, made, self.files, self.python_roots(setup)),

@@ -46,6 +46,56 @@ def list_undefined(
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
 
 
+BESIDE = "."
+"""The name that list_siblings() gives to imports."""
+
+
+def list_siblings(
+    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports, in modules of a Python package, of another module of its folder as if it were at the top, which Python 3
+    finds only where the importing file itself is started. files, setup: as above and below. Only of modules that are
+    imported by their package, lazy but for those that an entry point names. The name of each is BESIDE."""
+    if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
+        return  # more folders may be looked into
+    modules, named, imported = _Modules(files, (), ()), set(), set()
+    for path, file in setup:
+        for _, module, *_ in file.entry_points:
+            named.update(file.places_of(posixpath.dirname(path), module))
+    for path, facts in files.items():
+        imported.update(place for item in facts.imports for place in modules.find_named(path, item))
+    for path in sorted(files.keys() & (named | imported)):
+        for item in files[path].imports:
+            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
+                yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in named)
+
+
+UNLISTED = ".."
+"""The name that list_unlisted() gives to imports."""
+
+
+def list_unlisted(
+    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports of modules that lie in a Python package which setup() does not install, though it installs the outermost
+    one, each as an import of that package, lazy but for those in files that an entry point names. files, setup: as
+    above. The name of each is UNLISTED."""
+    modules = _Modules(files, (), ())
+    for path, file in setup:
+        folder, listed = posixpath.dirname(path), set(file.packages)
+        if not listed or "*" in listed or any(one.startswith(("packages", "arguments")) for one in file.unresolved):
+            continue
+        named = {place for _, module, *_ in file.entry_points for place in file.places_of(folder, module)}
+        roots = {posixpath.dirname(file.places_of(folder, name)[1]) for name in listed if "." not in name}
+        for importer, facts in files.items():
+            if posixpath.dirname(importer) in roots or not f"{importer}/".startswith(tuple(f"{r}/" for r in roots)):
+                for item in facts.imports:
+                    owners = {modules.package_of(place, roots) for place in modules.find_named(importer, item)}
+                    for owner in sorted(owners - listed - {""}):
+                        lazy = item.lazy or importer not in named
+                        yield importer, msgspec.structs.replace(item, module=owner, names=(UNLISTED,), lazy=lazy)
+
+
 class PythonOffer(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a package offers to Python code of others. modules: the names that each module binds, as PythonFile.bound.
     built: names of modules that may come from other files."""
@@ -123,12 +173,14 @@ class _Modules:
         self._files, self._others, self._paths = files, others, paths
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name: dict[str, list[str]] = {}
-        # Folders with an __init__.py that lie in none such, by their names.
+        # Folders with an __init__.py that lie in none such, or in `src`, by their names.
         self._roots: dict[str, list[str]] = {}
         for path in files:
             self._by_name.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
             root = _stem_of(path)
-            if path.endswith("/__init__.py") and f"{posixpath.dirname(root)}/__init__.py" not in files:
+            around = posixpath.dirname(root)
+            outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
+            if path.endswith("/__init__.py") and outermost:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
@@ -194,6 +246,33 @@ class _Modules:
                 if item.module and f"{folder}/".startswith(f"{root}/") and len(several) == 1:
                     return f"{folder[len(posixpath.dirname(root)) :].lstrip('/').replace('/', '.')}.{item.module}"
         return ""
+
+    def find_named(self, path: str, item: Import) -> Iterator[str]:
+        """The files that an import from a package names by their package: the module, or modules among the names."""
+        module = self.absolute(path, item) if item.level else item.module
+        for stem in self._meant(module) if module else ():
+            if stem in self._stems and not stem.endswith("/__init__"):
+                yield self._stems[stem]
+            yield from (self._stems[f"{stem}/{name}"] for name in item.names if f"{stem}/{name}" in self._stems)
+
+    def package_of(self, path: str, roots: Collection[str]) -> str:
+        """The Python package that a module lies in, below one of these folders; empty for another module."""
+        folder = posixpath.dirname(path)
+        root = next((one for one in roots if f"{folder}/".startswith(f"{one}/")), None)
+        return folder[len(posixpath.dirname(root)) :].strip("/").replace("/", ".") if root is not None else ""
+
+    @cached_property
+    def _stems(self) -> dict[str, str]:
+        return {_stem_of(path): path for path in self._files}
+
+    def is_beside(self, path: str, name: str) -> bool:
+        """Whether a module of a Python package lies beside one of this name, and none at the top is called so."""
+        folder = posixpath.dirname(path)
+        stem = posixpath.join(folder, name)
+        if name in sys.stdlib_module_names or name in self._roots or f"{folder}/__init__.py" not in self._files:
+            return False
+        inside = [_stem_of(one) == stem for one in self._by_name.get(name, ())]
+        return bool(inside) and all(inside) and self._stems[stem] != path
 
     def find(self, path: str, item: Import) -> str | None:
         """The file that an import names, None where it may be another one or none."""
