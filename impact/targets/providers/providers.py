@@ -77,8 +77,6 @@ class Providers:
     def __init__(self, data: Path = DATA, cache: Path | None = None):
         self._data, self._cache = data, cache
         self._file = unpacked.UnpackedFile(self._contents, self._place, "fact")
-        self._sets: dict[int, tuple[Provider, ...]] = {}
-        self._patterns: dict[str, tuple[int, ...]] = {}
 
     def __reduce__(self):
         return Providers, (self._data, self._cache)
@@ -253,11 +251,12 @@ class Providers:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
         if not _within(self.known_releases(package), distro, version):
             return None
-        numbers = self._patterns.get(package)
-        if numbers is None:
-            rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
-            numbers = self._patterns[package] = tuple(number for (number,) in rows)
-        return any(_within(self._pattern(number), distro, version) for number in numbers)
+        return any(_within(self._pattern(number), distro, version) for number in self._patterns(package))
+
+    @cached_method
+    def _patterns(self, package: str) -> list[int]:
+        rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
+        return [number for (number,) in rows]
 
     def _vendors(self, key: str) -> list[Provider]:
         return self._facts("vendor", key)
@@ -285,11 +284,13 @@ class Providers:
         if row is None:
             return []
         number, platforms = row
-        known = self._sets.get(number)
-        if known is None:
-            ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
-            known = self._sets[number] = tuple(_decode(entries))
+        known = self._set(number)
         return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
+
+    @cached_method
+    def _set(self, number: int) -> tuple[Provider, ...]:
+        ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+        return tuple(_decode(entries))
 
     @cached_method
     def _row(self, table: str, name: str) -> tuple[int, int] | None:
