@@ -124,8 +124,8 @@ class TargetView:
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
-        # What rules worked out for each package and several of them ask for.
-        self.worked_out: dict[tuple[str, str], Any] = {}
+        # What others worked out about it, see kept_with().
+        self.derived: dict[Any, Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:

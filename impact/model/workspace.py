@@ -157,8 +157,8 @@ class Workspace:
         self.identity = identity
         # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
         self.whole = whole
-        # What later joins made of it, each under its own type.
-        self.derived: dict[type, Any] = {}
+        # What later joins made of it, see kept_with().
+        self.derived: dict[Any, Any] = {}
 
     def __iter__(self):
         return iter(self.packages.values())
