@@ -28,9 +28,7 @@ DOORS = {
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
-                "changes", "distro/conda", "machine/sonames", "parameters", "providers/apt", "providers/includes",
-                "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields",
-                "surface/store",
+                "changes", "machine/sonames", "providers/providers", "snapshot", "surface/fields", "surface/store",
             )),
             _SHIPPED,
         ),

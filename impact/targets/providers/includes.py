@@ -16,7 +16,7 @@ import msgspec
 
 from ....edges.memory import cached_method
 from ....edges.reach import Reach
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 from ..version import at_least, parts
 from . import message_headers
 from .libraries import system_libraries
@@ -95,14 +95,7 @@ class Includes:
 @cache
 def default() -> Includes:
     """The shipped table. Raises SnapshotError when it cannot be read."""
-    import zstandard
-
-    path = DATA / "includes.json.zst"
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return Includes(msgspec.json.decode(raw, type=IncludesTable))
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return Includes(read_table(DATA / "includes.json.zst", IncludesTable))
 
 
 _INCLUDE_FOLDERS = ("eigen3/Eigen/", "eigen3/unsupported/", "opencv4/opencv2/")
@@ -465,11 +458,7 @@ class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 @cache
 def offered() -> dict[str, tuple[str, ...]]:
     """Names to the headers that offer them: types that some header stopped bringing along, and much used ones."""
-    path = DATA / "offers.json"
-    try:
-        reviewed = msgspec.json.decode(path.read_bytes(), type=_Offers).names
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    reviewed = read_table(DATA / "offers.json", _Offers).names
     return {**default().table.names, **reviewed}
 
 

@@ -10,14 +10,14 @@ import sqlite3
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
 from ....edges.memory import cached_method
 from ...cache import cache_folder
 from .. import unpacked
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, SnapshotError, read_table
 from ..target import Provider
 from ..version import parts
 
@@ -140,20 +140,13 @@ class Providers:
     @cached_property
     def _find_modules(self) -> dict[str, dict[str, list[str]]]:
         """What CMake's find modules look for, see databuild/find_modules.py."""
-        return self._read("find_modules.json", dict[str, dict[str, list[str]]])
+        return read_table(self._data / "find_modules.json", dict[str, dict[str, list[str]]])
 
     @cached_property
     def commands(self) -> dict[int, dict[str, str]]:
         """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
         databuild/commands.py."""
-        return self._read("commands.json", dict[int, dict[str, str]])
-
-    def _read(self, name: str, type_: Any) -> Any:
-        path = self._data / name
-        try:
-            return msgspec.json.decode(path.read_bytes(), type=type_)
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        return read_table(self._data / "commands.json", dict[int, dict[str, str]])
 
     def spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
@@ -342,12 +335,11 @@ class Providers:
 
     def _read_info(self) -> tuple[str, bytes]:
         """The hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
-        info = self._data / "providers.json"
+        sha256 = read_table(self._data / "providers.json", _Info).sha256
         try:
-            facts = (self._data / "providers.yaml").read_bytes()
-            return msgspec.json.decode(info.read_bytes(), type=_Info).sha256, facts
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
+            return sha256, (self._data / "providers.yaml").read_bytes()
+        except OSError as error:
+            raise SnapshotError(f"{error}; install rosimpact again") from None
 
 
 def _once(providers: list[Provider]) -> list[Provider]:

@@ -12,7 +12,7 @@ from functools import cache
 
 import msgspec
 
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 
 _DEFINED: dict[tuple[str, ...], str] = {
     ("algorithm", "bits/stl_algo"): (
@@ -161,11 +161,7 @@ def _of_c() -> dict[str, frozenset[str]]:
 
 @cache
 def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
-    path = DATA / "providers_std.json"
-    try:
-        read = msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, str]])
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    read = read_table(DATA / "providers_std.json", dict[str, dict[str, str]])
     return tuple(
         (int(major), {header: frozenset(text.split()) for header, text in table.items()})
         for major, table in sorted(read.items(), key=lambda item: int(item[0]))
@@ -202,14 +198,7 @@ class StandardNames(msgspec.Struct, frozen=True):
 @cache
 def names() -> StandardNames:
     """The names that are known. Raises SnapshotError when the data cannot be read."""
-    import zstandard
-
-    path = DATA / "std_names.json.zst"
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return msgspec.json.decode(raw, type=StandardNames)
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return read_table(DATA / "std_names.json.zst", StandardNames)
 
 
 @cache
