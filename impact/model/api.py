@@ -248,16 +248,13 @@ class Changes:
         history: Callable[[str, int], SurfaceHistory | None] | None = None,
     ):
         self._lines, self._asked, self._history = lines, asked, history
-        self._known: dict[tuple[str, int], PackageNames | None] = {}
 
+    @cached_method
     def known(self, package: str, ros: int = 0) -> PackageNames | None:
         """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
-        key = package, ros
-        if key not in self._known:
-            lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
-            asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
-            self._known[key] = _known(package, asked) if lines else None
-        return self._known[key]
+        lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
+        asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
+        return _known(package, asked) if lines else None
 
     def types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
         """The types that the versions asked about (the last one stored when that is any) declare for a name, as
@@ -400,8 +397,6 @@ class Vocabulary:
         self.home = home
         self._changes, self._ros = changes, ros
         self._known: dict[str, PackageNames] = {}
-        self._speakers: dict[str, frozenset[str]] = {}
-        self._around: dict[str, tuple[bool, frozenset[str]]] = {}
         waiting = list(packages)
         for package in waiting:  # classes of other packages come along with what is derived from them
             known = changes.known(package, ros) if package not in self._known and package != own else None
@@ -428,9 +423,7 @@ class Vocabulary:
     @cached_method
     def by_last(self, word: str) -> tuple[str, ...]:
         """Changing names that end so and of which a use can matter."""
-        names = (
-            name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters
-        )
+        names = (name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters)
         return tuple(dict.fromkeys(names))
 
     def knows(self, package: str) -> bool:
@@ -511,26 +504,27 @@ class Vocabulary:
         """Whether a word can be the last part of a name that is looked for. near: the words of the file, and of each
         that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
         too."""
-        around = self._around.get(word)
-        if around is None:
-            wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
-            owners = [name.rpartition("::")[0] for name in wanted]
-            speakers = frozenset().union(*(self.speakers(owner) for owner in owners if owner))
-            around = self._around[word] = "" in owners, speakers
-        return around[0] or any(not words.isdisjoint(around[1]) for words in near)
+        alone, speakers = self._around(word)
+        return alone or any(not words.isdisjoint(speakers) for words in near)
+
+    @cached_method
+    def _around(self, word: str) -> tuple[bool, frozenset[str]]:
+        wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
+        owners = [name.rpartition("::")[0] for name in wanted]
+        return "" in owners, frozenset().union(*(self.speakers(owner) for owner in owners if owner))
 
     def speakers(self, owner: str) -> frozenset[str]:
         """Last parts of the classes that may have what a class has: one of them stands wherever a member of it is
         used."""
-        last = owner.rpartition("::")[2]
-        found = self._speakers.get(last)
-        if found is None:
-            names = {last: None}
-            for name in (waiting := [last]):
-                for known in self._known.values():
-                    for other in known.derived.get(name, ()):
-                        if other not in names:
-                            names[other] = None
-                            waiting.append(other)
-            found = self._speakers[last] = frozenset(names)
-        return found
+        return self._speakers(owner.rpartition("::")[2])
+
+    @cached_method
+    def _speakers(self, last: str) -> frozenset[str]:
+        names = {last: None}
+        for name in (waiting := [last]):
+            for known in self._known.values():
+                for other in known.derived.get(name, ()):
+                    if other not in names:
+                        names[other] = None
+                        waiting.append(other)
+        return frozenset(names)

@@ -365,22 +365,16 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
+    @cached_method
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
-        known = self._meant.get(text)
-        if known is None:
-            wanted = text
-            while wanted not in self.qualified and "::" in wanted:
-                wanted = wanted.rpartition("::")[0]
-            if wanted not in self.qualified:
-                wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
-            known = self._meant[text] = wanted
-        return known
-
-    @cached_property
-    def _meant(self) -> dict[str, str]:
-        return {}
+        wanted = text
+        while wanted not in self.qualified and "::" in wanted:
+            wanted = wanted.rpartition("::")[0]
+        if wanted not in self.qualified:
+            wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
+        return wanted
 
 
 def digest_of(
@@ -428,7 +422,6 @@ class _Join:
         self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._known: dict[str, KnownFile] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
@@ -944,16 +937,13 @@ class _Join:
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
+    @cached_method
     def known(self, path: str) -> KnownFile:
         """What a file declares and uses."""
-        known = self._known.get(path)
-        if known is None:
-            from ..facts.cpp.code import CppCode
-            from .cpp.resolver import KnownFile
+        from ..facts.cpp.code import CppCode
+        from .cpp.resolver import KnownFile
 
-            words = self.spoken(path) if path in self.cpp else frozenset()
-            known = self._known[path] = KnownFile(CppCode(self.read(path)), words)
-        return known
+        return KnownFile(CppCode(self.read(path)), self.spoken(path) if path in self.cpp else frozenset())
 
     @cached_method
     def spoken(self, path: str) -> frozenset[str]:
@@ -1013,9 +1003,7 @@ class _Join:
     def bare(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
         """A use of a bare word, with the preprocessor conditions around it."""
         around = self.macros.asked(word.conditions, targets)
-        return NameUse(
-            word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets
-        )
+        return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
     def reach(self, path: str) -> set[str]:
         """All include paths that reach a file, through files of the package."""

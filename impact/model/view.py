@@ -111,19 +111,14 @@ class TargetView:
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
         self._whole: dict[str, frozenset[str]] = {}
-        self._possible: dict[str, frozenset[str]] = {}
-        self._spreads: dict[frozenset[str], frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
-        self._modules: dict[str, tuple[Provider, ...]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
-        self._interfaces: dict[str, message_headers.Definitions] = {}
-        self._environments: dict[str, Environment] = {}
-        # What rules worked out for each package and several of them ask for.
-        self.worked_out: dict[tuple[str, str], Any] = {}
+        # What others worked out about it, see kept_with().
+        self.derived: dict[Any, Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:
@@ -345,16 +340,15 @@ class TargetView:
             inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
         return () if inner is None else (path, *inner)
 
+    @cached_method
     def _own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
-        known = self._interfaces.get(package)
-        if known is None:
-            known = self._interfaces[package] = message_headers.Definitions()
-            for file in self.workspace.packages[package].digest.interfaces:
-                kind = file.definition.kind
-                known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
-                    file.definition
-                )
+        known = message_headers.Definitions()
+        for file in self.workspace.packages[package].digest.interfaces:
+            kind = file.definition.kind
+            known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
+                file.definition
+            )
         return known
 
     @cached_property
@@ -553,10 +547,7 @@ class TargetView:
         conditions = tuple(conditions)
         if not conditions:
             return True
-        environment = self._environments.get(ahead.name)
-        if environment is None:
-            environment = self._environments[ahead.name] = self._environment_on(ahead.target)
-        return all_hold(conditions, environment) is not False
+        return all_hold(conditions, self._environment_on(ahead.target)) is not False
 
     def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
         """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
@@ -568,6 +559,7 @@ class TargetView:
         """The same on the newest distro."""
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
 
+    @cached_method
     def _environment_on(self, target: Target) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
@@ -672,16 +664,13 @@ class TargetView:
         """What packages have at hand in each role, and what is handed on to them."""
         return Roles(self)
 
+    @cached_method
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages:
             return self._installed_with(name)
-        if name not in self._possible:
-            self._possible[name] = (
-                self.target.possible_dependencies(name)
-                if self.target.dependencies(name) is None
-                else self.target.later_dependencies(name).union(self._installed_with(name))
-            )
-        return self._possible[name]
+        if self.target.dependencies(name) is None:
+            return self.target.possible_dependencies(name)
+        return self.target.later_dependencies(name).union(self._installed_with(name))
 
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
@@ -700,11 +689,11 @@ class TargetView:
 
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
-        start = frozenset(names)
-        known = self._spreads.get(start)
-        if known is None:
-            known = self._spreads[start] = frozenset().union(*map(self._installed_whole, start))
-        return known
+        return self._spread(frozenset(names))
+
+    @cached_method
+    def _spread(self, names: frozenset[str]) -> frozenset[str]:
+        return frozenset().union(*map(self._installed_whole, names))
 
     def _installed_whole(self, name: str) -> frozenset[str]:
         """A name and everything that is installed along with it."""
@@ -873,29 +862,26 @@ class TargetView:
             ]
         return found
 
+    @cached_method
     def module(self, module: str) -> tuple[Provider, ...]:
         """Who could answer `import module`."""
         head = module.split(".")[0]
-        known = self._modules.get(module)
-        if known is None:
-            owners = self.workspace.modules.get(head, ())
-            if head in owners:
-                owners = [head]
-            found = [Provider("ros", o) for o in owners]
-            if not found and stdlib(module, self.target.python or 99, self.target.python_major):
-                found = [Provider("system", "")]
-            if not found and ever_stdlib(module):
-                found = [Provider("system", "")]  # gone from Python, which python-version says; nobody else's module
-            if not found:
-                found = list(self.providers.module(module))
-                if not any(p.name == head for p in found) and self.is_package(head):
-                    found.insert(0, Provider("ros", head, "", False))
-                if found:
-                    # A key of any name that has pip install what is called as the module.
-                    names = dict.fromkeys((head, head.replace("_", "-")))
-                    found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
-            known = self._modules[module] = tuple(found)
-        return known
+        owners = self.workspace.modules.get(head, ())
+        if head in owners:
+            owners = [head]
+        if owners:
+            return tuple(Provider("ros", owner) for owner in owners)
+        # What is gone from Python is nobody else's module, and python-version says so.
+        if stdlib(module, self.target.python or 99, self.target.python_major) or ever_stdlib(module):
+            return (Provider("system", ""),)
+        found = list(self.providers.module(module))
+        if not any(p.name == head for p in found) and self.is_package(head):
+            found.insert(0, Provider("ros", head, "", False))
+        if found:
+            # A key of any name that has pip install what is called as the module.
+            names = dict.fromkeys((head, head.replace("_", "-")))
+            found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
+        return tuple(found)
 
     @cached_method
     def needs(self, package: Package) -> tuple[Need, ...]:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
 from ...model.view import TargetView
@@ -99,12 +100,10 @@ class IncludedHeaders:
         return change if view.has_released_header(change.package, path) is False else None
 
 
+@kept_with
 def included_headers(view: TargetView) -> IncludedHeaders:
     """Those of a view, made once."""
-    key = "included headers", ""
-    if key not in view.worked_out:
-        view.worked_out[key] = IncludedHeaders(view)
-    return view.worked_out[key]
+    return IncludedHeaders(view)
 
 
 # Letters of a file's name: shorter ones are alike by chance.

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     find_package() of the package stops on a machine that has only what package.xml declares, in every dependant.
 
-Severity
-    warning.
-
 Example
     find_package(rmw REQUIRED)      # in arm-extras.cmake, and package.xml has only <build_depend>rmw</build_depend>
 

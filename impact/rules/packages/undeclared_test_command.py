@@ -21,6 +21,7 @@ Not reported
     Commands whose package is found by name, or along with another one.
 """
 
+from ....edges.memory import kept_with
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.target import Provider
@@ -60,19 +61,17 @@ def undeclared_test_command(view: TargetView, package: Package):
         )
 
 
+@kept_with
 def find_test_commands(view: TargetView) -> dict[str, str]:
     """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
     ament_cmake_test."""
-    known = view.worked_out.get(("test commands", ""))
-    if known is None:
-        known = view.worked_out["test commands", ""] = {
-            command: name
-            for command, owners in view.providers.commands.get(view.target.ros, {}).items()
-            for name in owners.split()
-            if "ament_cmake" in name
-            and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
-        }
-    return known
+    return {
+        command: name
+        for command, owners in view.providers.commands.get(view.target.ros, {}).items()
+        for name in owners.split()
+        if "ament_cmake" in name
+        and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
+    }
 
 
 def _doubts(view: TargetView, package, name: str, conditions) -> tuple[Doubt, ...]:
