@@ -366,22 +366,16 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
+    @cached_method
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
-        known = self._meant.get(text)
-        if known is None:
-            wanted = text
-            while wanted not in self.qualified and "::" in wanted:
-                wanted = wanted.rpartition("::")[0]
-            if wanted not in self.qualified:
-                wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
-            known = self._meant[text] = wanted
-        return known
-
-    @cached_property
-    def _meant(self) -> dict[str, str]:
-        return {}
+        wanted = text
+        while wanted not in self.qualified and "::" in wanted:
+            wanted = wanted.rpartition("::")[0]
+        if wanted not in self.qualified:
+            wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
+        return wanted
 
 
 def digest_of(
@@ -429,7 +423,6 @@ class _Join:
         self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._known: dict[str, KnownFile] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
@@ -506,10 +499,13 @@ class _Join:
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
-        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
+        links = {target.name: {link.item for link in target.links} for target in self.build.targets}
+        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined}, links)
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        by_commands = (path for use in self.build.uses for path in use.makes)
+        made = modules.union(part for path in by_commands for part in path.split("/"))
         run_setup = {
             path: file.python
             for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())
@@ -571,14 +567,14 @@ class _Join:
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in (
-                    *list_undefined(python, modules, self.files),
+                    *list_undefined(python, made, self.files),
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),
                     *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
                 )
             ),
-            python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),
+            python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
@@ -942,16 +938,13 @@ class _Join:
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
+    @cached_method
     def known(self, path: str) -> KnownFile:
         """What a file declares and uses."""
-        known = self._known.get(path)
-        if known is None:
-            from ..facts.cpp.code import CppCode
-            from .cpp.resolver import KnownFile
+        from ..facts.cpp.code import CppCode
+        from .cpp.resolver import KnownFile
 
-            words = self.spoken(path) if path in self.cpp else frozenset()
-            known = self._known[path] = KnownFile(CppCode(self.read(path)), words)
-        return known
+        return KnownFile(CppCode(self.read(path)), self.spoken(path) if path in self.cpp else frozenset())
 
     @cached_method
     def spoken(self, path: str) -> frozenset[str]:
@@ -1011,9 +1004,7 @@ class _Join:
     def bare(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
         """A use of a bare word, with the preprocessor conditions around it."""
         around = self.macros.asked(word.conditions, targets)
-        return NameUse(
-            word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets
-        )
+        return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
     def reach(self, path: str) -> set[str]:
         """All include paths that reach a file, through files of the package."""

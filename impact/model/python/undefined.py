@@ -21,8 +21,8 @@ def list_undefined(
 ) -> Iterator[tuple[str, Import]]:
     """Such names, each as its import with the path it stands in; the module is empty for names that the file uses
     itself, and for modules, whose names have a dot. With them star imports of a package from itself. files: the Python
-    files of a package by their paths. others: what modules and libraries of the package are called. paths: all its
-    files, of which modules may be built."""
+    files of a package by their paths. others: what modules and libraries of the package, and what its build
+    makes in ways that are not known, are called. paths: all its files, of which modules may be built."""
     modules = _Modules(files, others, paths)
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
@@ -134,7 +134,7 @@ def offer_python(
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
         if root is not None and f"{root}/__init__.py" in files:
             modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
-    return PythonOffer(modules, _Modules(files, others, paths).sources) if modules else PythonOffer()
+    return PythonOffer(modules, _Modules(files, others, paths).built) if modules else PythonOffer()
 
 
 def list_undefined_functions(
@@ -184,7 +184,8 @@ class _Modules:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
-    def _built(self) -> frozenset[str]:
+    def built(self) -> frozenset[str]:
+        """What may come from something else than Python, by name."""
         roots = tuple(f"{root}/" for several in self._roots.values() for root in several)
         inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
         return frozenset((*self.sources, *(o for o in self._others if o not in inside and o not in self._by_name)))
@@ -198,7 +199,7 @@ class _Modules:
     def may_be_built(self, name: str) -> bool:
         """Whether a module of this name may come from something else than Python: it is called like a file of another
         language, or begins as one is called."""
-        return name in self._built or _is_made(name, self.sources)
+        return name in self.built or _is_made(name, self.sources)
 
     def is_meant_by(self, item: Import) -> bool:
         """Whether an import from a package of another name, all of whose names a module of this one at the same place

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
 from ...model.view import TargetView
@@ -83,10 +84,8 @@ class IncludedHeaders:
         found = view.lost_header(path)
         if found is None:
             return None
-        if found.form == "platform" and (
-            view.opaque_libraries(package, path) or view.blind(package) or view.may_be_downloaded(package, path)
-        ):
-            return HeaderLoss(None)  # something that comes along has contents that are not known
+        if found.form == "platform" and view.unknown_contents.may_hold(package, path):
+            return HeaderLoss(None)
         return HeaderLoss(found, found.form)
 
     def _find_row(self, path: str) -> ChangeInForce | None:
@@ -101,12 +100,10 @@ class IncludedHeaders:
         return change if view.has_released_header(change.package, path) is False else None
 
 
+@kept_with
 def included_headers(view: TargetView) -> IncludedHeaders:
     """Those of a view, made once."""
-    key = "included headers", ""
-    if key not in view.worked_out:
-        view.worked_out[key] = IncludedHeaders(view)
-    return view.worked_out[key]
+    return IncludedHeaders(view)
 
 
 # Letters of a file's name: shorter ones are alike by chance.

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     Packages that depend on the group, such as ros1_bridge, are built before this one and lack its interfaces.
 
-Severity
-    warning.
-
 Example
     <depend>rosidl_default_runtime</depend>
 

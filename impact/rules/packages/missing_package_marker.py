@@ -8,9 +8,6 @@ Why it breaks
     `ros2 run`, `ros2 launch` and get_package_share_directory() look for the package in this index. colcon still adds a
     missing marker, with a warning that it will stop doing so; a Debian package of the package has none.
 
-Severity
-    warning.
-
 Example
     data_files=[('share/sled', ['package.xml'])]
 

@@ -60,9 +60,10 @@ def ungiven_package(view: TargetView, package: Package):
         if not include.targets or not view.certain(include.conditions):
             continue
         owners = {p.name for p in providers}
-        if not owners.isdisjoint(("", package.name)) or ((
-            system := tuple(p for p in providers if p.kind != "ros")
-        ) and (view.blind(package) or view.answered(system, view.closure(package)))):
+        if not owners.isdisjoint(("", package.name)) or (
+            (system := tuple(p for p in providers if p.kind != "ros"))
+            and (view.unknown_contents.may_come_along(package) or view.answered(system, view.closure(package)))
+        ):
             continue  # the compiler finds it by itself
         names = owners & found  # of several possible owners, the one that CMake finds
         if len(names) != 1:
@@ -83,7 +84,7 @@ def ungiven_package(view: TargetView, package: Package):
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
-                if view.list_unknown(frozenset(given & view.declared(package).keys())):
+                if view.unknown_contents.list_unknown(frozenset(given & view.declared(package).keys())):
                     items = None  # what one of them brings is not known
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)

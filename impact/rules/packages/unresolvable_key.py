@@ -172,14 +172,21 @@ def _find_reworded(view: TargetView, name: str) -> str:
 
 
 def _parts_of(view: TargetView, name: str) -> list[str]:
-    """Released packages that are called after a name, two at least: what the repository of that name holds."""
+    """Released packages that are called after a name, two at least, of the repository of that name."""
     if len(name) < 4:
         return []
     names, start = _in_order(view.target.released_names()), name + "_"
     first = bisect_left(names, start)
     # `_` is followed by a backquote.
-    found = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    alike = names[first : bisect_left(names, name + "`", first)]
+    found = [n for n in alike if view.available(n) and _plain_repository(view, n) == name]
     return found if len(found) > 1 else []
+
+
+def _plain_repository(view: TargetView, package: str) -> str:
+    """The name of the repository that releases a package, without what only tells the generation (`moveit2`)."""
+    repository = view.target.repository(package)
+    return re.sub(r"[-_]*(?:ros)?\d?\Z", "", repository[0]).replace("-", "_") if repository is not None else ""
 
 
 @lru_cache(maxsize=16)

@@ -8,7 +8,7 @@ import msgspec
 
 from ....edges.memory import cached_method
 from ..platform import neighbours
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 
 INFERRED = 1 << 15
 """Bit of a relation that was read off the lists of files of Ubuntu's suites instead of a package's own dependencies."""
@@ -94,13 +94,7 @@ class Apt:
 
 @cache
 def _graph(data: Path) -> AptGraph:
-    import zstandard
-
-    path = data / "apt.json.zst"
-    try:
-        return msgspec.json.decode(zstandard.ZstdDecompressor().decompress(path.read_bytes()), type=AptGraph)
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return read_table(data / "apt.json.zst", AptGraph)
 
 
 @cache
