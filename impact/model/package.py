@@ -571,7 +571,7 @@ class _Join:
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),
-                    *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
+                    *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
             python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
