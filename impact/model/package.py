@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...edges.memory import cached_method
+from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
@@ -1061,13 +1062,7 @@ class _Join:
 
     def reached(self, path: str) -> list[str]:
         """The file and the files of the package that it includes, directly or not."""
-        stack, seen = [path], {}
-        while stack:
-            at = stack.pop()
-            if at not in seen:
-                seen[at] = None
-                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
-        return list(seen)
+        return list(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this

@@ -28,7 +28,7 @@ Not reported
 import re
 from collections.abc import Iterator, Set
 
-from ...model.cmake.links import may_hide, package_of
+from ...model.cmake.links import may_hide, package_of, reached_targets
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
@@ -161,17 +161,8 @@ def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
 def _find_given(targets, name: str) -> set[str] | None:
     """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
     items: set[str] = set()
-    stack, seen = [name], set()
-    while stack:
-        target = targets.get(stack.pop())
-        if target is None or target.name in seen:
-            continue
-        seen.add(target.name)
+    for target in reached_targets(targets, [name]):
         if target.kind in ("unknown", "external", "fetched"):
             return None
-        if target.alias_of:
-            stack.append(target.alias_of)
-        for link in target.links:
-            items.add(link.item)
-            stack.append(link.item)
+        items.update(link.item for link in target.links)
     return items
