@@ -63,7 +63,8 @@ _SOURCES = 6
 
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
-    targets: CMake targets that compile it."""
+    targets: CMake targets that compile it. idle: no file of the package names anything of the namespace, or a macro,
+    that its first folder is called after."""
 
     path: str
     at: At
@@ -71,6 +72,7 @@ class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     public: bool
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
+    idle: bool = False
 
 
 class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -699,7 +701,8 @@ class _Join:
                 if to is None:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
-                                   conditions + self.macros.asked(include.conditions, targets), targets)
+                                   conditions + self.macros.asked(include.conditions, targets), targets,
+                                   self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
             reach, types = None, set()
             for name in facts.qualified:
@@ -732,6 +735,19 @@ class _Join:
                     if not any(h in reach for h in headers):
                         needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
+
+    @cached_property
+    def spaces(self) -> frozenset[str]:
+        """First parts of the qualified names and namespaces in C++ files."""
+        names = {name.text for facts in self.cpp.values() for name in facts.qualified}
+        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.types))
+        return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
+
+    @cached_method
+    def is_idle(self, space: str) -> bool:
+        """Whether no C++ file names anything of a namespace, or a macro that is called after it."""
+        macro = f"{space.upper()}_"
+        return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
     def defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
