@@ -54,6 +54,13 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _PLAIN_PYTHON = re.compile(r"#!\s*/\S*\bpython\b(?![\d.])|#!\s*/usr/bin/env\s+python(?!\S)")
+
+
+def _is_part(facts: PythonFile) -> bool:
+    """Whether a Python file cannot be started itself, since it imports relative to its package."""
+    return any(item.level and not item.lazy for item in facts.imports)
+
+
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -204,7 +211,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. plain_scripts: those
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter, and that import
+    nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter.
     """
@@ -547,8 +555,10 @@ class _Join:
             problems=tuple(problems),
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
-            scripts=tuple(p for p, f in python.items() if f.interpreter),
-            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter)),
+            scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
+            plain_scripts=tuple(
+                p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)
+            ),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
