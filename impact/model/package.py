@@ -453,6 +453,8 @@ class _Join:
     def digest(self) -> LinkedPackage:
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        # Files whose references nobody follows where the package is used.
+        unused = set(self.files) if of_tests else set()
         python: dict[str, PythonFile] = {}
         interpreted = self.interpreted
         shells: list[str] = []
@@ -500,6 +502,8 @@ class _Join:
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
+                    if getattr(facts, "generation", 0) == 1 and self.build_type.startswith("ament"):
+                        unused.add(path)  # left over: the launch system of ROS 2 refuses it
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         if self.build_type == "catkin":  # which starts programs from the source space too
@@ -529,7 +533,7 @@ class _Join:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if of_tests else "run"))
+                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if p in unused else "run"))
                 for p, r in references
             ),
             names=tuple(names + python_names),
