@@ -788,14 +788,14 @@ class TargetView:
                 and (n.startswith("gazebo") or not self.providers.knows_system([n, *bringing]))
             ]  # fmt: skip
         stem = re.split(r"[^a-z]", wanted.lower())[0]
-        unread = [n for n in self.closure(package) if stem in n and self._is_unread_library(n)] if len(stem) > 2 else []
+        unread = [n for n in self.closure(package) if stem in n and self.is_unread_library(n)] if len(stem) > 2 else []
         return [*self._opaque[package.name], *unread]
 
     def _is_unknown_collection(self, debian: str) -> bool:
         """Whether a package is no library, and of no archive that was read."""
         return not debian.startswith("lib") and not self.apt.knows(debian)
 
-    def _is_unread_library(self, name: str) -> bool:
+    def is_unread_library(self, name: str) -> bool:
         """Whether a plain build, or the build of a library that a package carries, installs what is not stored, or not
         all of it."""
         return self._is_plain_build(name) or (name.endswith("_vendor") and name not in self.workspace.packages)
