@@ -684,17 +684,19 @@ class _Join:
         """As LinkedPackage.own_calls."""
         from .cpp.own_calls import list_own_calls
 
-        compiled = {path: role[2] for path, role in roles.items() if role[2] and not is_header(path)}
-        if len(set(compiled.values())) < 2:
+        targets = {path: role[2] for path, role in roles.items() if role[2]}
+        sources = {path: targets.get(path, ()) for path in self.cpp if not is_header(path)}
+        if len(set(sources.values())) < 2:
             return
 
         def included(path: str) -> Collection[str]:
-            return {to for to, _ in self.resolved.get(path, ()) if to is not None}
+            # What nothing compiles may belong to something that is not built here.
+            return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        def defined(paths: Collection[str]) -> Mapping[str, Collection[str]]:
-            return {path: one.functions for path, one in zip(paths, self.declared(paths), strict=True)}
+        def declared(paths: Collection[str]) -> Mapping[str, DeclaredCpp]:
+            return dict(zip(paths, self.declared(paths), strict=True))
 
-        yield from list_own_calls(compiled, included, self.spoken, defined)
+        yield from list_own_calls(sources, included, self.spoken, declared)
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
