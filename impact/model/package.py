@@ -314,14 +314,15 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
 
 
 def role_of_folder(path: str) -> str | None:
-    """`test` or `aside` when a folder of the path says so, else None. path is relative to the package."""
+    """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
+    is relative to the package."""
     parts = path.lower().split("/")[:-1]
     if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
         return "test"
     name = path.rsplit("/", 1)[-1].lower()
     if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
         return "test"
-    if any(part in ASIDE for part in parts) or _ASIDE_NAME.search(name):
+    if any(part in ASIDE or part[:1] == "." for part in parts) or _ASIDE_NAME.search(name):
         return "aside"
     return None
 
@@ -587,7 +588,7 @@ class _Join:
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),
-                    *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
+                    *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
             python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
