@@ -67,7 +67,7 @@ class UnknownContents:
         stem = re.split(r"[^a-z]", wanted.lower())[0]
         return self.is_made_apart(package, wanted) or (
             len(stem) >= _SHORTEST
-            and any(stem in name and self._is_carried_library(name) for name in self._view.closure(package))
+            and any(stem in name and self.is_carried_library(name) for name in self._view.closure(package))
         )
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
@@ -144,7 +144,7 @@ class UnknownContents:
                 yield debian
 
     @cached_method
-    def _is_carried_library(self, name: str) -> bool:
+    def is_carried_library(self, name: str) -> bool:
         """Whether a package that is not of the workspace is another project's library, whose installed files are not
         all stored: built with plain CMake or Meson, or a package that carries it."""
         view = self._view

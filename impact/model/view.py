@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cached_method
-from ...edges.reach import Reach
+from ...edges.reach import Reach, walk
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
@@ -646,13 +646,7 @@ class TargetView:
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
-        found, waiting = set(names), list(names)
-        while waiting:
-            for other in self._possibly_with(waiting.pop()):
-                if other not in found:
-                    found.add(other)
-                    waiting.append(other)
-        return frozenset(found)
+        return frozenset(walk(names, self._possibly_with))
 
     @cached_property
     def unknown_contents(self) -> UnknownContents:

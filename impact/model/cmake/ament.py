@@ -54,6 +54,7 @@ def ament_export(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 @handles("ament_package")
 def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_package(CONFIG_EXTRAS ...)."""
+    run.refuse_project()
     if not run.silent:
         run.ament_package = run.place(call.at)
     given = sections(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
@@ -63,6 +64,12 @@ def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None
         path = run.tree_path(item)
         run.add_export(path, "cfg_extras", item.at, run.under(item))
         run.hand_on(path, item.at)
+
+
+@handles("ament_package_xml", "catkin_package_xml")
+def package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """ament_package_xml() and catkin_package_xml(): the version is known from here on."""
+    run.refuse_project()
 
 
 @handles("ament_register_extension")

@@ -28,6 +28,7 @@ from .build import (
     GeneratedInterfaces,
     Install,
     ReadFile,
+    RefusedName,
     UnknownCommand,
 )
 from .drafts import TargetDraft, Targets
@@ -163,7 +164,7 @@ class Interpreter:
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
-        self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
+        self.refused: dict[RefusedName, None] = {}
         self.asked: dict[str, None] = {}
         self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
         self.ament_package: At | None = None
@@ -265,7 +266,7 @@ class Interpreter:
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
-            repeated=tuple(self.repeated),
+            refused=tuple(self.refused),
             read_elsewhere=tuple(self.read_elsewhere),
             asked=tuple(self.asked),
             stops=tuple(self.stops),
@@ -389,9 +390,9 @@ class Interpreter:
             return
         made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
         makes = tuple(str(item) for item in made if "$" not in item)
-        self.uses[
-            UnknownCommand("command", call.name, self.place(call.at), module, self.conditions, makes=makes)
-        ] = None
+        self.uses[UnknownCommand("command", call.name, self.place(call.at), module, self.conditions, makes=makes)] = (
+            None
+        )
 
     def run_block(self, block: Block) -> int:
         """Runs a block command."""
@@ -983,8 +984,10 @@ class Interpreter:
         if self.silent or name.startswith("CMAKE_"):
             return
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
-        if not alike and not name.endswith(READ_SUFFIXES) and not (
-            name.startswith("CATKIN_") and self.command == "install"
+        if (
+            not alike
+            and not name.endswith(READ_SUFFIXES)
+            and not (name.startswith("CATKIN_") and self.command == "install")
         ):
             return
         self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None
@@ -1159,10 +1162,23 @@ class Interpreter:
         if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
             opposite = {(held.text, not held.negated) for held in before.conditions}
             if not any((held.text, held.negated) in opposite for held in conditions):
-                self.repeated[(str(name), self.place(name.at), merge(before.conditions, conditions))] = None
+                self.refuse("twice", name, before.conditions)
         draft = self.new_target(name, kind, name.at)
         draft.added = name.sure and kind not in ("imported", "alias")
         return draft
+
+    def refuse(self, kind: str, name: Word, conditions: tuple[Condition, ...] = ()) -> None:
+        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
+        if name.sure and "$<" not in name and not self.silent:
+            self.refused[RefusedName(kind, str(name), self.place(name.at), merge(conditions, self.under(name)))] = None
+
+    def refuse_project(self) -> None:
+        """Notes the name of the project where it is not that of the package, which ament_package_xml() of
+        ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""
+        held = self.get("PROJECT_NAME")
+        if held is not None and held.sure and held.text != self.package:
+            self.refuse("project", held.words[0])
+        self.set_unknown(f"{self.project}_VERSION", self.here())
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""

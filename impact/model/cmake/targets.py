@@ -124,7 +124,11 @@ def known(run: Interpreter, name: Word) -> TargetDraft:
         draft = followed
     if draft is not None:
         return draft
-    return run.new_target(name, "generated" if run.is_typesupport(name) else "unknown", name.at)
+    typesupport = run.is_typesupport(name)
+    # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
+    if run.command != "add_dependencies" and not typesupport and name not in run.maybe_set and "::" not in name:
+        run.refuse("no target", name)
+    return run.new_target(name, "generated" if typesupport else "unknown", name.at)
 
 
 # The folders of the prefix that those who link a target search; spaces stand where a list was split.
@@ -312,6 +316,11 @@ def set_target_properties(run: Interpreter, call: CommandCall, args: list[Word])
     if "PROPERTIES" in args:
         split = position(args, "PROPERTIES")
         pairs = args[split + 1 :]
+        versions = {f"${{{run.project}_VERSION}}", "${PROJECT_VERSION}"}
+        if not any(template.quoted for template in call.templates):
+            for item in pairs[1::2]:
+                if item in versions and run.get(item[2:-1]) is None:
+                    run.refuse("no value", word(item, item.at, item.conditions))
         for name in split_words(args[:split]):
             for key, value in zip(pairs[::2], pairs[1::2], strict=False):
                 set_target_property(run, name, key, value)

@@ -198,7 +198,8 @@ class _Modules:
 
     def is_meant_by(self, item: Import) -> bool:
         """Whether an import from a package of another name, all of whose names a module of this one at the same place
-        binds, seems to mean it. Where that module has them from there itself, the other package is one."""
+        binds, seems to mean it. Where that module has them from there itself, or the package imports of the other one
+        what it does not have itself, the other package is one."""
         head, _, rest = item.module.partition(".")
         if not rest or not item.names or head in self._others or head in sys.stdlib_module_names:
             return False
@@ -208,9 +209,27 @@ class _Modules:
                 file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
                 if file is None or any(other.module == item.module for other in file.imports):
                     continue
+                if any(self._is_of_another(other, root) for other in self._imports_of.get(head, ())):
+                    continue
                 if all(f" {name} " in file.bound for name in item.names):
                     return True
         return False
+
+    @cached_property
+    def _imports_of(self) -> dict[str, list[Import]]:
+        """The absolute imports of modules in packages, by the package."""
+        found: dict[str, list[Import]] = {}
+        for item in (item for facts in self._files.values() for item in facts.imports if not item.level):
+            head, dot, _ = item.module.partition(".")
+            if dot:
+                found.setdefault(head, []).append(item)
+        return found
+
+    def _is_of_another(self, item: Import, root: str) -> bool:
+        """Whether what an import asks of another package is not at the same place below a root."""
+        stem = f"{root}/{item.module.partition('.')[2].replace('.', '/')}"
+        file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+        return file is None or not all(f" {name} " in file.bound for name in item.names)
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file

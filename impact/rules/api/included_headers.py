@@ -60,7 +60,7 @@ class IncludedHeaders:
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
         known = path in self._gone or path in self._early or path in self._view.coming
-        if not known and self._view.header(path):
+        if not known and is_answered(self._view, path):
             self._quiet.add(path)
 
     def find_loss(self, package: Package, include: IncludeUse) -> HeaderLoss | None:
@@ -128,6 +128,60 @@ def find_misspelt(view: TargetView, package: Package, path: str) -> str | None:
         return None
     known = view.is_package(generated["package"]) or generated["package"] in view.declared(package)
     return None if known else f"{package.name}/{path.rpartition('/')[2]}"
+
+
+def is_answered(view: TargetView, path: str) -> bool:
+    """Whether somebody may have a header; a package of the workspace has no more than is known of it."""
+    return any(p.sure or p.name not in view.workspace.packages for p in view.header(path))
+
+
+def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
+    """Whether an include names what no file of the workspace is called, no build here makes and nobody is known to
+    have."""
+    path, build = include.path, package.build
+    if not include.targets or not view.certain(include.conditions) or build.unresolved:
+        return False
+    if is_answered(view, path):
+        return False
+    name = path.rpartition("/")[2]
+    if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _file_names(view):
+        return False
+    if any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
+        return False
+    if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
+        return False
+    if view.unknown_contents.may_hold(package, path.lstrip("./")):
+        return False
+    return path.startswith(".") or all(_has_known_headers(view, one) for one in _list_direct(view, package))
+
+
+def _list_direct(view: TargetView, package: Package) -> set[str]:
+    """What a package declares and finds itself."""
+    passed = {one.item for target in package.build.targets for one in target.links if one.how == "ament"}
+    return {*view.declared(package), *(one.name for one in package.build.found), *passed}
+
+
+def _has_known_headers(view: TargetView, name: str) -> bool:
+    """Whether all headers of what has a name are known: a package of the workspace or a released one that a surface is
+    stored of, a library of the platform."""
+    if (own := view.workspace.packages.get(name)) is not None:
+        made = own.build.unresolved or any(t.kind in ("external", "fetched") for t in own.build.targets)
+        return not (made or name.endswith("_vendor"))
+    if name in view.preinstalled or name.startswith("python"):
+        return True
+    if view.is_package(name):
+        return view.offers.package(name) is not None and not view.unknown_contents.is_carried_library(name)
+    keys = (name, *view.debian(name), *(p.package or p.name for p in view.cmake(name)))
+    return view.providers.knows_system(keys)
+
+
+def _file_names(view: TargetView) -> frozenset[str]:
+    """The names of all files of the workspace."""
+    key = "names of files", ""
+    if key not in view.worked_out:
+        files = (path for package in view.workspace for path in package.digest.files)
+        view.worked_out[key] = frozenset(path.rpartition("/")[2] for path in files)
+    return view.worked_out[key]
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:

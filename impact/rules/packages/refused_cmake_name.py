@@ -2,12 +2,14 @@
 
 What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
-    target with the same name, and target names with a slash, including those that ament_python_install_package() makes
-    from its argument.
+    target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
+    project that is not called as package.xml calls the package, a property of a target whose value is an unset version,
+    and target names with a slash, including those that ament_python_install_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
-    target with the same name and at a target name with a slash.
+    target with the same name, at what is no target, and at a target name with a slash; catkin_package() and
+    ament_package() stop at another name of the project.
 
 Severity
     error where CMake always stops; warning where CMake may not reach the place, and for packages that are not REQUIRED.
@@ -19,9 +21,13 @@ Use instead
     find_package(manif REQUIRED)
 
 Not reported
-    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that cannot be resolved.
+    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that cannot be resolved, and
+    targets that a command which is not known may add.
 """
 
+from collections.abc import Iterator
+
+from ...model.cmake.build import RefusedName
 from ...model.cmake.conditions import version_key
 from ...model.view import TargetView
 from ...model.workspace import Package
@@ -42,6 +48,18 @@ _MAKES_TARGETS = "1.1.0"
             "declare it in package.xml, and call find_package() with the name of its CMake configuration",
         ),
         "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
+        "project": Text(
+            "the project is called `{subject}`, but package.xml names the package `{package}`, at which CMake stops",
+            "project({package})",
+        ),
+        "no target": Text("`{subject}` is no target, at which CMake stops", "name a target that the package adds"),
+        "too early": Text(
+            "`{subject}` is used as a target before it is added, at which CMake stops", "add the target first"
+        ),
+        "no value": Text(
+            "`{subject}` is not set, so that a property has no value, at which CMake stops",
+            "give project() a version",
+        ),
         "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),
     },
 )
@@ -55,11 +73,11 @@ def refused_cmake_name(view: TargetView, package: Package):
             doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
             yield Diagnostic(found.at, found.name, package.name, kind=kind, doubts=doubts)
     seen = set()
-    for name, at, conditions in build.repeated:
-        if name not in seen and view.active(conditions):
-            seen.add(name)
-            doubts = doubts_of_place(view, "build", conditions)
-            yield Diagnostic(at, name, package.name, kind="twice", doubts=doubts)
+    for kind, refused in _list_refused(package):
+        if refused.name not in seen and view.active(refused.conditions):
+            seen.add(refused.name)
+            doubts = doubts_of_place(view, "build", refused.conditions)
+            yield Diagnostic(refused.at, refused.name, package.name, {"package": package.name}, kind, doubts)
     refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
     if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
@@ -67,6 +85,18 @@ def refused_cmake_name(view: TargetView, package: Package):
     for name, at, conditions in slashed:
         if "/" in name and "$" not in name and view.active(conditions):
             yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
+
+
+def _list_refused(package: Package) -> Iterator[tuple[str, RefusedName]]:
+    """The names at which the commands stop that are given them, with the kind of text; none that what is not read may
+    make or set."""
+    build = package.build
+    hidden = build.unresolved or any(t.kind in ("external", "fetched") or t.name.endswith("()") for t in build.targets)
+    added = {target.name for target in build.targets if target.kind != "unknown"}
+    for refused in build.refused:
+        early = refused.kind == "no target" and refused.name in added
+        if refused.kind in ("twice", "project") or not hidden:
+            yield "too early" if early else refused.kind, refused
 
 
 def _is_of_debian(view: TargetView, package: Package, name: str) -> bool:
