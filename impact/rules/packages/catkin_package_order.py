@@ -25,7 +25,6 @@ Not reported
     define, since these may call it.
 """
 
-import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
@@ -64,7 +63,6 @@ def _find_none(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     build, known = package.build, view.providers.commands.get(view.target.ros, {})
     commands = {use.name for use in build.uses if use.kind == "command"}
     found = next((f for f in build.found if f.name == "catkin" and view.certain(f.conditions)), None)
-    parts = tuple(f"{f.name}_" for f in build.found)
-    harmless = all(name in known or name.startswith(parts) for name in commands)
-    if found is not None and not build.unresolved and harmless and not re.search("package|export", " ".join(commands)):
+    harmless = all(name in known and "package" not in name and "export" not in name for name in commands)
+    if found is not None and not build.unresolved and harmless:
         yield Diagnostic(found.at, "catkin_package", package.name, kind="never")

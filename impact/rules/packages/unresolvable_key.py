@@ -63,8 +63,7 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "remove it, correct the name, or add it to `[workspace] private` in rosimpact.toml",
         ),
         "python 2": Text(
-            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3",
-            "declare `{replacement}`",
+            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3", "declare `{replacement}`"
         ),
         "pip": Text(
             "rosdep installs `{subject}` with pip alone, so bloom cannot release `{package}` as a Debian package",
