@@ -1,8 +1,8 @@
 """catkin-package-order: a target is added before catkin_package() is called, or it is never called.
 
 What it does
-    Reports libraries and programs that CMake adds before it comes to catkin_package(), and packages that find catkin and
-    do not call it at all.
+    Reports libraries and programs that CMake adds before it comes to catkin_package(), and packages that find catkin
+    and do not call it at all.
 
 Why it breaks
     catkin_package() sets where targets are built and what they export: those that were added before it land in the
@@ -25,6 +25,7 @@ Not reported
     define, since these may call it.
 """
 
+import re
 from collections.abc import Iterator
 
 from ...model.view import TargetView
@@ -63,6 +64,7 @@ def _find_none(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     build, known = package.build, view.providers.commands.get(view.target.ros, {})
     commands = {use.name for use in build.uses if use.kind == "command"}
     found = next((f for f in build.found if f.name == "catkin" and view.certain(f.conditions)), None)
-    harmless = all(name in known and "package" not in name and "export" not in name for name in commands)
-    if found is not None and not build.unresolved and harmless:
+    parts = tuple(f"{f.name}_" for f in build.found)
+    harmless = all(name in known or name.startswith(parts) for name in commands)
+    if found is not None and not build.unresolved and harmless and not re.search("package|export", " ".join(commands)):
         yield Diagnostic(found.at, "catkin_package", package.name, kind="never")

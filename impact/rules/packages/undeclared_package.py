@@ -18,8 +18,8 @@ Severity
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
     along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces).
-    note: conditional code, examples, documentation, files that nothing compiles, and all but the first of more than five
-    imports, or packages that launch files start, which a package does not declare.
+    note: conditional code, examples, documentation, files that nothing compiles, and all but the first of more than
+    five imports, or packages that launch files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -38,7 +38,6 @@ from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, Together, rule, severity
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
-
 
 _FEW = 5
 """So many undeclared imports, or packages that launch files start, are each reported."""

@@ -63,7 +63,8 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "remove it, correct the name, or add it to `[workspace] private` in rosimpact.toml",
         ),
         "python 2": Text(
-            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3", "declare `{replacement}`"
+            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3",
+            "declare `{replacement}`",
         ),
         "pip": Text(
             "rosdep installs `{subject}` with pip alone, so bloom cannot release `{package}` as a Debian package",
@@ -165,9 +166,9 @@ def _find_reworded(view: TargetView, name: str) -> str:
     words, found = name.split("_"), []
     for other in view.workspace.packages:
         pairs = [pair for pair in zip(words, other.split("_"), strict=False) if pair[0] != pair[1]]
-        if len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1:
-            if posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
-                found.append(other)
+        alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
+        if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
+            found.append(other)
     return found[0] if len(found) == 1 else ""
 
 
