@@ -54,6 +54,7 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
         "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
+        "node": Text("`{subject}` is a node, but no rule installs it", "{how}"),
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
@@ -142,16 +143,25 @@ def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
             return
 
 
+# Folders where programs of packages lie, and modules that programs import to be nodes.
+_OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
+_OF_NODES = frozenset(("rclpy", "rqt_gui"))
+
+
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
-    """Scripts that a launch file starts, or that lie beside programs that are installed, and that no rule installs."""
+    """Scripts that no rule installs: that a launch file starts, that lie beside programs which are installed, or that
+    are nodes of ROS 2, which starts none from the source space."""
+    nodes = {use.at.path for use in package.digest.imports if use.module.partition(".")[0] in _OF_NODES}
+    nodes = nodes if package.build.ament_package is not None else set()
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     for path in (*package.digest.scripts, *package.digest.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
-        if (name in scripts or beside) and name not in others and not is_installed(package, installs, path):
+        node = path in nodes and folder[len(package.path) :].lstrip("/") in _OF_PROGRAMS
+        if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
-            kind = "script" if name in scripts else "beside"
+            kind = "script" if name in scripts else "beside" if beside else "node"
             yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)
