@@ -3,8 +3,8 @@
 What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
     target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
-    project that is not called as package.xml calls the package, a property of a target whose value is an unset version,
-    and target names with a slash, including those that ament_python_install_package() makes from its argument.
+    project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
+    property of a target whose value is an unset version, and target names with a slash, including those that ament_python_install_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
@@ -56,6 +56,10 @@ _MAKES_TARGETS = "1.1.0"
         "too early": Text(
             "`{subject}` is used as a target before it is added, at which CMake stops", "add the target first"
         ),
+        "mixed": Text(
+            "`{subject}` is linked with PUBLIC or PRIVATE and without, at which CMake stops",
+            "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",
+        ),
         "no value": Text(
             "`{subject}` is not set, so that a property has no value, at which CMake stops",
             "give project() a version",
@@ -95,7 +99,7 @@ def _list_refused(package: Package) -> Iterator[tuple[str, RefusedName]]:
     added = {target.name for target in build.targets if target.kind != "unknown"}
     for refused in build.refused:
         early = refused.kind == "no target" and refused.name in added
-        if refused.kind in ("twice", "project") or not hidden:
+        if refused.kind in ("twice", "project", "mixed") or not hidden:
             yield "too early" if early else refused.kind, refused
 
 
