@@ -9,6 +9,7 @@ setup(
     package_dir={f"rosimpact.{room}": room for room in ROOMS},
     package_data={f"rosimpact.{room}": ["py.typed"] for room in ROOMS}
     | {
+        "rosimpact.impact.cli": ["templates/*"],
         "rosimpact.impact.targets": ["data/*"],
         "rosimpact.impact.rules": ["precision.json"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from rosimpact.impact.rules.explain import summarize
 from rosimpact.impact.rules.rule import Rule, all_rules, groups
 
 FAMILIES = {
@@ -57,7 +56,7 @@ def row(rule: Rule) -> str:
     """One line of a table. The rule's file is named as the rule is, with underscores."""
     path = f"../impact/rules/{rule.family}/{rule.name.replace('-', '_')}.py"
     severity = rule.severity + (", preview" if rule.preview else "")
-    summary = summarize(rule).rstrip(".").replace("|", "\\|")
+    summary = rule.summary.rstrip(".").replace("|", "\\|")
     return f"| [`{rule.name}`]({path}) | {severity} | {summary} |\n"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, wraps
 from types import MethodType
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -37,3 +37,17 @@ if TYPE_CHECKING:
         return method
 else:
     cached_method = Kept
+
+
+def kept_with(function: Method) -> Method:
+    """Runs a function once for the same arguments. The first has to have a dictionary `derived`, in which the answers
+    are kept for as long as it lives; the others have to be hashable."""
+
+    @wraps(function)
+    def ask(holder: Any, *arguments: Any) -> Any:
+        key = function, *arguments
+        if key not in holder.derived:
+            holder.derived[key] = function(holder, *arguments)
+        return holder.derived[key]
+
+    return ask  # type: ignore[return-value]

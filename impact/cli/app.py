@@ -4,12 +4,13 @@ import gc
 import io
 import sys
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
 from copy import copy
-from functools import cache
+from functools import cache, wraps
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
@@ -63,14 +64,49 @@ def _schema_option(report: str) -> Any:
     return typer.Option("--schema", callback=show, is_eager=True, help="Print the JSON schema of --format json.")
 
 
-_FOLLOW_LINKS = "Follow links that lead out of the workspace. Do not use it on workspaces that you do not trust."
+_Workspace = Annotated[Path, typer.Argument(help="Workspace, package or git repository.")]
+_Revision = Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")]
+_Output = Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")]
+_Config = Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")]
+_FollowLinks = Annotated[
+    bool,
+    typer.Option(
+        "--follow-links",
+        help="Follow links that lead out of the workspace. Do not use it on workspaces that you do not trust.",
+    ),
+]
+_FailOn = Annotated[
+    str, typer.Option(help="Lowest severity that gives exit status 1: error (the default), warning, note, never.")
+]
+_Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
 
-_FAIL_ON = "Lowest severity that gives exit status 1: error (the default), warning, note, never."
+# Options whose values may hold commas; others that may be repeated take several names at once.
+_WITH_COMMAS = frozenset(("target", "base", "set_"))
 
 
-@app.command()
+def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Registers a command, whose function holds its options and help alone. What they are given goes to the function of
+    the same name in the module of the command, or of its group, which is imported when it runs."""
+
+    def register(options: Callable[..., None]) -> Callable[..., None]:
+        @wraps(options)
+        def run(**given: Any) -> None:
+            given.pop("schema", None)
+            for key, kind in get_type_hints(options).items():
+                if kind in (list[str], list[str] | None):
+                    given[key] = tuple(given[key] or ()) if key in _WITH_COMMAS else _names(given[key])
+            module = import_module(f".{options.__name__.partition('_')[0]}", __package__)
+            raise typer.Exit(getattr(module, options.__name__)(**given))
+
+        return group.command(name)(run)
+
+    return register
+
+
+@_command(app)
 def check(
-    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    path: _Workspace = Path("."),
     target: Annotated[
         list[str] | None,
         typer.Option(
@@ -83,7 +119,7 @@ def check(
     format: Annotated[
         str, typer.Option("--format", "-f", help="One of text, json, sarif, github, markdown, html.")
     ] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    output: _Output = None,
     rev: Annotated[str, typer.Option(help="Check this git revision instead of the files on disk.")] = "",
     base: Annotated[
         list[str] | None,
@@ -103,7 +139,7 @@ def check(
         list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
     ] = None,
     ignore: Annotated[list[str] | None, typer.Option(help="Skip these rules or families.")] = None,
-    fail_on: Annotated[str, typer.Option(help=_FAIL_ON)] = "",
+    fail_on: _FailOn = "",
     notes: Annotated[bool, typer.Option("--notes", help="Also show notes in the text report.")] = False,
     preview: Annotated[
         bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")
@@ -120,59 +156,41 @@ def check(
         typer.Option("--fix", help="Apply fixes that are correct on all targets, and report what remains."),
     ] = False,
     diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change; change nothing.")] = False,
-    config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
-    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    config: _Config = None,
+    follow_links: _FollowLinks = False,
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
     schema: Annotated[bool, _schema_option("json")] = False,
 ) -> None:
     """Report what breaks, on which machine, where, and what to do.
 
     Exit status: 0 nothing at or above --fail-on, 1 findings, 2 the tool failed or analysed nothing.
     """
-    from . import check as command
-
-    raise typer.Exit(
-        command.check(
-            path, targets=tuple(target or ()), format=format, output=output, rev=rev, base=tuple(base or ()),
-            select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview,
-            baseline=baseline, write_baseline=write_baseline, prune_baseline=prune_baseline, fix=fix, diff=diff,
-            config=config, jobs=jobs, quiet=quiet, install=install, follow_links=follow_links,
-        )
-    )  # fmt: skip
 
 
-@app.command()
+@_command(app)
 def upgrade(
     from_: Annotated[str, typer.Option("--from", help="The current target, in any form that --target accepts.")],
     to: Annotated[str, typer.Option("--to", help="The new target.")],
-    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    path: _Workspace = Path("."),
     packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
-    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
-    config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
-    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
+    rev: _Revision = "",
+    config: _Config = None,
+    follow_links: _FollowLinks = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
-    fail_on: Annotated[str, typer.Option(help=_FAIL_ON)] = "",
+    output: _Output = None,
+    fail_on: _FailOn = "",
     schema: Annotated[bool, _schema_option("upgrade")] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
 ) -> None:
     """List what breaks when you move from one target to another, package by package in build order.
 
     Exit status: 0 no new finding at or above --fail-on, 1 something breaks, 2 the tool failed.
     """
-    from . import upgrade as command
-
-    raise typer.Exit(
-        command.upgrade(
-            path, from_, to, packages=_names(packages), rev=rev, config=config, format=format, output=output,
-            fail_on=fail_on, jobs=jobs, quiet=quiet, follow_links=follow_links,
-        )
-    )  # fmt: skip
 
 
-@app.command()
+@_command(app)
 def why(
     name: Annotated[
         str, typer.Argument(help="A header, package, rosdep key, CMake name, Python module or executable.")
@@ -185,18 +203,15 @@ def why(
         ),
     ] = None,
     target: Annotated[list[str] | None, typer.Option("--target", "-t", help="As for check.")] = None,
-    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
+    follow_links: _FollowLinks = False,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Show which package provides a name on a target, since when, and what uses it in the workspace."""
-    from . import why as command
-
-    raise typer.Exit(command.why(name, path, tuple(target or ()), format, follow_links=follow_links))
 
 
-@app.command()
+@_command(app)
 def graph(
-    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    path: _Workspace = Path("."),
     launch: Annotated[
         str, typer.Option(help="Only what this launch file starts, with the names that it assigns.")
     ] = "",
@@ -212,12 +227,12 @@ def graph(
     package: Annotated[list[str] | None, typer.Option(help="Only nodes of this package.")] = None,
     around: Annotated[str, typer.Option(help="Only what is near this node or topic.")] = "",
     hops: Annotated[int, typer.Option(min=1, help="With --around: the number of steps from node to node.")] = 2,
-    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
+    rev: _Revision = "",
     base: Annotated[
         list[str] | None,
         typer.Option(help="Mark what was added, removed and changed since this revision, as for check."),
     ] = None,
-    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
+    follow_links: _FollowLinks = False,
     format: Annotated[
         str, typer.Option("--format", "-f", help="One of text, json, graphml, dot, mermaid, html.")
     ] = "text",
@@ -226,24 +241,15 @@ def graph(
         bool, typer.Option("--all", help="Also show hidden names and everything that was not resolved.")
     ] = False,
     schema: Annotated[bool, _schema_option("graph.json")] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
 ) -> None:
     """Show which nodes are connected by topics, services and actions, without building or running anything."""
-    from . import graph as command
-
-    raise typer.Exit(
-        command.graph(
-            path, launch=launch, arguments=tuple(set_ or ()), nodes=_names(node), topics=_names(topic),
-            packages=_names(package), around=around, hops=hops, rev=rev, base=tuple(base or ()), format=format,
-            output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
-        )
-    )  # fmt: skip
 
 
-@app.command()
+@_command(app)
 def impact(
-    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    path: _Workspace = Path("."),
     base: Annotated[
         list[str] | None,
         typer.Option(
@@ -251,7 +257,7 @@ def impact(
             ".repos file)."
         ),
     ] = None,
-    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
+    rev: _Revision = "",
     package: Annotated[list[str] | None, typer.Option(help="Only changes in this package. May be repeated.")] = None,
     topic: Annotated[
         list[str] | None, typer.Option(help="Only what goes through this topic; `*` matches any text.")
@@ -259,26 +265,18 @@ def impact(
     node: Annotated[
         list[str] | None, typer.Option(help="Only changes in this node, or that affect it; `*` matches any text.")
     ] = None,
-    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
+    follow_links: _FollowLinks = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    output: _Output = None,
     all: Annotated[bool, typer.Option("--all", help="List every affected node and all unresolved calls.")] = False,
     schema: Annotated[bool, _schema_option("impact")] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
 ) -> None:
     """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
-    from . import impact as command
-
-    raise typer.Exit(
-        command.impact(
-            path, base=tuple(base or ()), rev=rev, packages=_names(package), topics=_names(topic), nodes=_names(node),
-            format=format, output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
-        )
-    )  # fmt: skip
 
 
-@app.command()
+@_command(app)
 def logic(
     repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),
     range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; default: all up to HEAD.")] = "",
@@ -288,44 +286,30 @@ def logic(
     topic: Annotated[list[str] | None, typer.Option(help="Only this topic. May be repeated.")] = None,
     all: Annotated[bool, typer.Option("--all", help="Also list conditions that were only reworded.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="text, json or html (a timeline).")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    output: _Output = None,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    quiet: _Quiet = False,
 ) -> None:
     """List the commits that changed when messages are published: which condition or trigger, and whom it affects."""
-    from . import logic as command
-
-    raise typer.Exit(
-        command.logic(
-            repository, range=range, number=commits, since=since, packages=_names(package), topics=_names(topic),
-            everything=all, format=format, output=output, jobs=jobs, quiet=quiet,
-        )
-    )  # fmt: skip
 
 
-@app.command()
+@_command(app)
 def explain(
     rule: Annotated[str | None, typer.Argument(help="Name of a rule or group; default: list all rules.")] = None,
 ) -> None:
     """Explain what a rule does, why it matters, and how to fix its findings."""
-    from . import explain as command
-
-    raise typer.Exit(command.explain(rule))
 
 
-@env_app.command("capture")
+@_command(env_app, "capture")
 def env_capture(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="File to write; default: standard output.")
     ] = None,
 ) -> None:
     """Write this machine as a target."""
-    from . import env as command
-
-    raise typer.Exit(command.env_capture(output))
 
 
-@env_app.command("diff")
+@_command(env_app, "diff")
 def env_diff(
     first: Annotated[str, typer.Argument(help="A target, in any form that --target accepts.")],
     second: Annotated[str, typer.Argument(help="Another target.")],
@@ -335,16 +319,13 @@ def env_diff(
     schema: Annotated[bool, _schema_option("machines")] = False,
 ) -> None:
     """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
-    from . import env as command
-
-    raise typer.Exit(command.env_diff(first, second, path, format, output))
 
 
 _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
 _REPOS_OR_SHIPPED = f"{_REPOS_HELP} Default: the shipped data."
 
 
-@surface_app.command("show")
+@_command(surface_app, "show")
 def surface_show(
     package: Annotated[
         str,
@@ -356,15 +337,12 @@ def surface_show(
     all: Annotated[bool, typer.Option("--all", help="Also show members of classes, constants and macros.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
+    jobs: _Jobs = None,
 ) -> None:
     """Show what a version of a package offers: headers, names, messages, targets, programs."""
-    from . import surface as command
-
-    raise typer.Exit(command.surface_show(package, repos=repos, all_of_it=all, format=format, output=output, jobs=jobs))
 
 
-@surface_app.command("diff")
+@_command(surface_app, "diff")
 def surface_diff(
     what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
     old: Annotated[
@@ -378,20 +356,12 @@ def surface_diff(
     ] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
+    jobs: _Jobs = None,
 ) -> None:
     """Show what changed between two versions: removed, moved and deprecated names, and changed signatures."""
-    from . import surface as command
-
-    raise typer.Exit(
-        command.surface_diff(
-            what, old, new, repos=repos, packages=_names(packages), all_of_it=all, format=format, output=output,
-            jobs=jobs,
-        )
-    )  # fmt: skip
 
 
-@surface_app.command("build")
+@_command(surface_app, "build")
 def surface_build(
     distro: Annotated[list[str], typer.Option(help="Read the packages of this distro. May be repeated.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write, such as surfaces.sqlite.")],
@@ -408,30 +378,19 @@ def surface_build(
     dask: Annotated[
         str | None, typer.Option(help="Use the cluster of this Dask scheduler, such as tcp://host:8786.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    quiet: _Quiet = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
-    from . import surface as command
-
-    raise typer.Exit(
-        command.surface_build(
-            distros=_names(distro), repos=repos, packages=_names(packages), all_versions=all_versions, output=output,
-            onto=onto, jobs=jobs, dask=dask, quiet=quiet,
-        )
-    )  # fmt: skip
 
 
-@data_app.command("status")
+@_command(data_app, "status")
 def data_status(
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Show the age and the sources of the distro data."""
-    from . import data as command
-
-    raise typer.Exit(command.data_status(format))
 
 
-@data_app.command("build")
+@_command(data_app, "build")
 def data_build(
     rosdistro: Annotated[
         Path, typer.Argument(help="Clone of the rosdistro git repository with its tags, bare or not.")
@@ -445,17 +404,11 @@ def data_build(
     ] = None,
 ) -> None:
     """Rebuild the snapshot from git repositories."""
-    from . import data as command
-
-    raise typer.Exit(command.data_build(rosdistro, output, work, meta_ros))
 
 
-@data_app.command("update")
+@_command(data_app, "update")
 def data_update() -> None:
     """Update the snapshot over the network, with the rosdistro library."""
-    from . import data as command
-
-    raise typer.Exit(command.data_update())
 
 
 def _version(value: bool) -> None:

@@ -37,9 +37,9 @@ def _fail(message: str, format: str, output: Path | None, path: object) -> int:
 
 
 def check(
-    path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
-    write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install=None,
-    follow_links=False,
+    path: Path, *, target, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
+    write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install,
+    follow_links,
 ) -> int:  # fmt: skip
     """Runs the check and prints its report. Returns the exit status: 0, 1 (findings), 2 (failed) or 130."""
 
@@ -52,7 +52,7 @@ def check(
         for file in (output, write_baseline, baseline if prune_baseline else None):
             check_output(file, path)
         options = Options(
-            targets, rev, base, select, ignore, preview, jobs, config, known, install=install,
+            target, rev, base, select, ignore, preview, jobs, config, known, install=install,
             follow_links=follow_links,
         )  # fmt: skip
         checked = run_check(path, options, None if quiet else progress_bar())
@@ -193,9 +193,7 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
         from ..report import text
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
-        style = (
-            PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
-        )
+        style = PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
         return text.render(report, style)
     if format == "github":
         from ..report import github

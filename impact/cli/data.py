@@ -6,7 +6,7 @@ from ...edges.console import counted, escape_json, run_command, say, steps
 from .output import READ_SO_FAR, TEXT_OR_JSON, deliver_answer, print_answer
 
 
-def data_status(format: str = "text") -> int:
+def data_status(format: str) -> int:
     """Prints date, origin and contents of the distro data in use."""
 
     def answer() -> str:

@@ -25,7 +25,7 @@ def env_capture(output: Path | None) -> int:
     return run_command(work, "interrupted; nothing was written", "this machine")
 
 
-def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None = None) -> int:
+def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None) -> int:
     """Prints what differs between two targets; beside a workspace, what matters to it. Returns the exit status: 0, or 2
     (failed)."""
     from ..report import machines as report

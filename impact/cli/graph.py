@@ -9,14 +9,14 @@ GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
 
 
 def graph(
-    path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
-    jobs, quiet, follow_links=False,
+    path: Path, *, launch, set_, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
+    follow_links,
 ) -> int:  # fmt: skip
     """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
-        given = dict(argument.partition(":=")[::2] for argument in arguments)
-        if any(":=" not in argument for argument in arguments):
+        given = dict(argument.partition(":=")[::2] for argument in set_)
+        if any(":=" not in argument for argument in set_):
             raise UserError("--set: write NAME:=VALUE")
         if given and not launch:
             raise UserError("--set: arguments belong to a launch file; name it with --launch")
@@ -29,8 +29,8 @@ def graph(
         )  # fmt: skip
         say_notes(found.notes)
         return draw(
-            found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-            hops=hops, everything=everything, style=style_of(output),
+            found.now, format, found.before, nodes=node, topics=topic, packages=package, around=around,
+            hops=hops, everything=all, style=style_of(output),
         )  # fmt: skip
 
     return deliver_answer(answer, format, GRAPH_FORMATS, output, path)

@@ -11,7 +11,7 @@ LOGIC_FORMATS = ("text", "json", "html")
 
 
 def logic(
-    path: Path, *, range, number, since, packages, topics, everything, format, output, jobs, quiet
+    repository: Path, *, range, commits, since, package, topic, all, format, output, jobs, quiet
 ) -> int:  # fmt: skip
     """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
 
@@ -23,13 +23,13 @@ def logic(
 
         with Store() as store:
             try:
-                asked = history.Range(range, number, since)
-                found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
+                asked = history.Range(range, commits, since)
+                found = history.read(os.fspath(repository), asked, store, jobs, None if quiet else steps())
             except ValueError as error:
                 raise UserError(f"--since: {error}") from None
             say_notes(store.notes)
-        all_of_it, found = found, history.chosen(found, packages, topics, everything)
-        missed = logic_report.missed(all_of_it, found, packages, topics)
+        all_of_it, found = found, history.chosen(found, package, topic, all)
+        missed = logic_report.missed(all_of_it, found, package, topic)
         say_notes([missed] if missed else [])
         if format == "html":
             return timeline.render(found, __version__)
@@ -37,4 +37,4 @@ def logic(
             return logic_report.as_json(found, __version__)
         return logic_report.text(found, style_of(output))
 
-    return deliver_answer(answer, format, LOGIC_FORMATS, output, path)
+    return deliver_answer(answer, format, LOGIC_FORMATS, output, repository)

@@ -1,4 +1,4 @@
-"""Lays out a rule: its module and its first file of cases, which work and are to be edited."""
+"""Lays out a rule: its module and its first file of cases, from templates which work and are to be edited."""
 
 import re
 from pathlib import Path
@@ -8,104 +8,7 @@ from ...edges.console import UserError
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 
-RULE = '''"""{name}: a manifest exports `{subject}`.
-
-What it does
-    Reports what is wrong, in a sentence.
-
-Why it breaks
-    What happens to whom, and when: configuring, compiling, linking, installing, starting.
-
-Severity
-    warning. Say what makes a finding more or less severe.
-
-Example
-    <export><{subject}/></export>
-
-Use instead
-    <export/>
-
-Not reported
-    What looks like it and works.
-"""
-
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
-
-
-@rule(
-    severity="warning",
-    preview=True,
-    texts=Text("`{{package}}` exports `{{subject}}`", help="remove it"),
-)
-def {function}(view: TargetView, package: Package):
-    for export in package.manifest.exports:
-        if export.tag == "{subject}":
-            yield Diagnostic(At(package.digest.manifest_path, export.line), export.tag, package.name)
-'''
-CASES = """# {name}
-
-Targets: jazzy
-
-```xml sled/package.xml
-<?xml version="1.0"?>
-<package format="3">
-  <name>sled</name>
-  <version>1.0.0</version>
-  <description>sled</description>
-  <maintainer email="robots@example.org">Robots</maintainer>
-  <license>Apache-2.0</license>
-
-  <buildtool_depend>ament_cmake</buildtool_depend>
-  <depend>rclcpp</depend>
-
-  <export>
-    <build_type>ament_cmake</build_type>
-  </export>
-</package>
-```
-
-```cmake sled/CMakeLists.txt
-cmake_minimum_required(VERSION 3.8)
-project(sled)
-
-find_package(ament_cmake REQUIRED)
-find_package(rclcpp REQUIRED)
-
-add_executable(sled src/sled.cpp)
-target_link_libraries(sled rclcpp::rclcpp)
-install(TARGETS sled DESTINATION lib/${{PROJECT_NAME}})
-
-ament_package()
-```
-
-```cpp sled/src/sled.cpp
-#include <rclcpp/rclcpp.hpp>
-
-int main(int argc, char ** argv)
-{{
-  rclcpp::init(argc, argv);
-  return 0;
-}}
-```
-
-## Nothing is reported
-
-## The manifest exports it
-
-```diff sled/package.xml
-     <build_type>ament_cmake</build_type>
-+    <{subject}/>
-```
-
-```findings
-warning sled/package.xml:14 {subject} [jazzy]
-  `sled` exports `{subject}`
-  help: remove it
-```
-"""
+TEMPLATES = Path(__file__).with_name("templates")
 
 
 def write_rule(root: Path, name: str, family: str) -> tuple[Path, Path]:
@@ -128,7 +31,8 @@ def write_rule(root: Path, name: str, family: str) -> tuple[Path, Path]:
     if known := [path for path in rules.glob(f"*/{function}.py")]:
         raise UserError(f"{known[0]}: exists; choose another name")
     module, first = rules / family / f"{function}.py", cases / family / f"{function}.md"
-    for path, text in ((module, RULE), (first, CASES)):
+    for path, template in ((module, "rule.py.txt"), (first, "cases.md")):
+        text = (TEMPLATES / template).read_text(encoding="utf-8")
         filled = text.format(name=name, function=function, subject="replace_me")
         files.write_file(path, filled.encode(), beneath=root, instead_of=None)
     return module, first

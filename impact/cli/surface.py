@@ -9,24 +9,24 @@ from ...edges.version import __version__
 from .output import check_output, deliver_answer, say_notes, style_of
 
 
-def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:
+def surface_show(package: str, *, repos, all, format, output, jobs) -> int:
     """Prints what a version of a package offers. Returns the exit status: 0, or 2 (failed)."""
     from ..report import surface as report
 
     def answer(store) -> str:
-        package, _, asked = what.partition("@")
-        source, state = _surface(package, asked, repos, store, jobs)
-        surface, hashes = state.surfaces[package], _hashes(package, source.asked, state)
+        name, _, asked = package.partition("@")
+        source, state = _surface(name, asked, repos, store, jobs)
+        surface, hashes = state.surfaces[name], _hashes(name, source.asked, state)
         if format == "json":
             return report.show_json(surface, source, __version__, hashes)
         if format == "markdown":
             return report.show_markdown(surface, source, hashes)
-        return report.show_text(surface, source, style_of(output), all_of_it, hashes)
+        return report.show_text(surface, source, style_of(output), all, hashes)
 
     return _of_surfaces(answer, format, output)
 
 
-def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, format, output, jobs) -> int:
+def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> int:
     """Prints what changed between two versions of a package, or of all packages of a clone. Returns the exit status:
     0, or 2 (failed)."""
     from ..report import surface as report
@@ -58,26 +58,26 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
             return report.diff_json(found, __version__)
         if format == "markdown":
             return report.diff_markdown(found)
-        return report.diff_text(found, style_of(output), all_of_it)
+        return report.diff_text(found, style_of(output), all)
 
     return _of_surfaces(answer, format, output)
 
 
-def surface_build(*, distros, repos, packages, all_versions, output, onto, jobs, dask, quiet) -> int:
+def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, dask, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
         from ...databuild.surface.clones import Clones
         from ...databuild.surfaces import all_distros, build
 
-        if not distros:
+        if not distro:
             raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
             raise UserError("--jobs: has no effect with --dask, which uses a cluster; give only one of the two")
         check_output(output, "")
         report = None if quiet else steps()
         versions = "all" if all_versions else "newest"
-        names = all_distros(distros)
+        names = all_distros(distro)
         built = build(Clones(repos), names, output, packages, jobs, report, versions=versions, dask=dask, onto=onto)
         if not built.packages:
             raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")

@@ -9,7 +9,7 @@ from .output import deliver_answer, one_of, progress_bar, style_of
 
 
 def upgrade(
-    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet, follow_links=False
+    path: Path, from_: str, to: str, *, packages, rev, config, format, output, fail_on, jobs, quiet, follow_links
 ) -> int:  # fmt: skip
     """Prints what an upgrade breaks. Returns the exit status: 0 (safe), 1 (something breaks) or 2 (failed)."""
     from ..report import upgrade as report
@@ -22,7 +22,7 @@ def upgrade(
         from ..analysis.upgrade import upgrade as compare
 
         options = Options(rev=rev, config=config, jobs=jobs, follow_links=follow_links)
-        found = compare(path, old, new, options, packages, None if quiet else progress_bar())
+        found = compare(path, from_, to, options, packages, None if quiet else progress_bar())
         breaks = fails(found.brought, fail_on or found.fail_on or "error")
         if format == "json":
             return report.as_json(found)

@@ -21,6 +21,7 @@ from ..targets.surface.offers_cpp import (
 from ..targets.surface.overrides import virtual_forms
 
 if TYPE_CHECKING:
+    from ..facts.surface import Entity
     from ..targets.asked_versions import AskedVersions
     from ..targets.surface.changes import ChangeEvent, Form, Line
     from ..targets.surface.store import SurfaceHistory
@@ -247,33 +248,34 @@ class Changes:
         history: Callable[[str, int], SurfaceHistory | None] | None = None,
     ):
         self._lines, self._asked, self._history = lines, asked, history
-        self._known: dict[tuple[str, int], PackageNames | None] = {}
 
+    @cached_method
     def known(self, package: str, ros: int = 0) -> PackageNames | None:
         """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
-        key = package, ros
-        if key not in self._known:
-            lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
-            asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
-            self._known[key] = _known(package, asked) if lines else None
-        return self._known[key]
+        lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
+        asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
+        return _known(package, asked) if lines else None
 
     def types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
         """The types that the versions asked about (the last one stored when that is any) declare for a name, as
         written there; empty where one of them declares it as a template, or none declares it. kinds: of Entity."""
-        found: set[str] = set()
+        found = list(self._entities(package, ros, name))
+        if any(entity.template is not None for entity in found):
+            return frozenset()
+        return frozenset(entity.type for entity in found if entity.kind in kinds)
+
+    def declares(self, package: str, ros: int, name: str) -> bool:
+        """Whether one of these versions declares a name."""
+        return any(True for _ in self._entities(package, ros, name))
+
+    def _entities(self, package: str, ros: int, name: str) -> Iterator[Entity]:
         for at in self._lines(package):
             history = self._history(package, at) if self._history is not None and ros in (0, at) else None
             if history is None:
                 continue
             asked = self._asked.of(package, at) if self._asked is not None else ((history.versions[-1], False),)
             for version, ahead in asked:
-                for entity in history.entities(name, version) if not ahead else ():
-                    if entity.template is not None:
-                        return frozenset()
-                    if entity.kind in kinds:
-                        found.add(entity.type)
-        return frozenset(found)
+                yield from history.entities(name, version) if not ahead else ()
 
     def _forms(self, package: str, ros: int, line: Line) -> _Forms:
         """What gives, of the events of a name of C++ in a line, how the versions that are asked about have it."""
@@ -395,8 +397,6 @@ class Vocabulary:
         self.home = home
         self._changes, self._ros = changes, ros
         self._known: dict[str, PackageNames] = {}
-        self._speakers: dict[str, frozenset[str]] = {}
-        self._around: dict[str, tuple[bool, frozenset[str]]] = {}
         waiting = list(packages)
         for package in waiting:  # classes of other packages come along with what is derived from them
             known = changes.known(package, ros) if package not in self._known and package != own else None
@@ -423,9 +423,7 @@ class Vocabulary:
     @cached_method
     def by_last(self, word: str) -> tuple[str, ...]:
         """Changing names that end so and of which a use can matter."""
-        names = (
-            name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters
-        )
+        names = (name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters)
         return tuple(dict.fromkeys(names))
 
     def knows(self, package: str) -> bool:
@@ -449,16 +447,16 @@ class Vocabulary:
 
     @cached_method
     def member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
-        """The changing name that a member of a class is, with the packages of the classes in between."""
-        between: list[str] = []
-        found = None
-        for one in self.line(full):
-            name = f"{one}::{last}"
-            if name in self.names:
-                found = name, tuple(dict.fromkeys(between))
-                break
-            between.append(self.classes.get(one) or "")
-        return found
+        """The changing name that a member of a class is, with the packages of the classes in between; None where one
+        of those has the member itself, which hides that of its base."""
+        line = self.line(full)
+        place = next((n for n, one in enumerate(line) if f"{one}::{last}" in self.names), None)
+        if place is None:
+            return None
+        between = [(self.classes.get(one) or "", f"{one}::{last}") for one in line[:place]]
+        if any(package and self._changes.declares(package, self._ros, name) for package, name in between):
+            return None
+        return f"{line[place]}::{last}", tuple(dict.fromkeys(package for package, _ in between))
 
     @cached_method
     def types_of(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:
@@ -506,26 +504,27 @@ class Vocabulary:
         """Whether a word can be the last part of a name that is looked for. near: the words of the file, and of each
         that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
         too."""
-        around = self._around.get(word)
-        if around is None:
-            wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
-            owners = [name.rpartition("::")[0] for name in wanted]
-            speakers = frozenset().union(*(self.speakers(owner) for owner in owners if owner))
-            around = self._around[word] = "" in owners, speakers
-        return around[0] or any(not words.isdisjoint(around[1]) for words in near)
+        alone, speakers = self._around(word)
+        return alone or any(not words.isdisjoint(speakers) for words in near)
+
+    @cached_method
+    def _around(self, word: str) -> tuple[bool, frozenset[str]]:
+        wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
+        owners = [name.rpartition("::")[0] for name in wanted]
+        return "" in owners, frozenset().union(*(self.speakers(owner) for owner in owners if owner))
 
     def speakers(self, owner: str) -> frozenset[str]:
         """Last parts of the classes that may have what a class has: one of them stands wherever a member of it is
         used."""
-        last = owner.rpartition("::")[2]
-        found = self._speakers.get(last)
-        if found is None:
-            names = {last: None}
-            for name in (waiting := [last]):
-                for known in self._known.values():
-                    for other in known.derived.get(name, ()):
-                        if other not in names:
-                            names[other] = None
-                            waiting.append(other)
-            found = self._speakers[last] = frozenset(names)
-        return found
+        return self._speakers(owner.rpartition("::")[2])
+
+    @cached_method
+    def _speakers(self, last: str) -> frozenset[str]:
+        names = {last: None}
+        for name in (waiting := [last]):
+            for known in self._known.values():
+                for other in known.derived.get(name, ()):
+                    if other not in names:
+                        names[other] = None
+                        waiting.append(other)
+        return frozenset(names)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...edges.memory import cached_method
+from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
@@ -35,7 +36,14 @@ from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .macros import Macros
-from .python.undefined import PythonOffer, list_undefined, list_undefined_functions, offer_python
+from .python.undefined import (
+    PythonOffer,
+    list_siblings,
+    list_undefined,
+    list_undefined_functions,
+    list_unlisted,
+    offer_python,
+)
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
@@ -54,6 +62,13 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _PLAIN_PYTHON = re.compile(r"#!\s*/\S*\bpython\b(?![\d.])|#!\s*/usr/bin/env\s+python(?!\S)")
+
+
+def _is_part(facts: PythonFile) -> bool:
+    """Whether a Python file cannot be started itself, since it imports relative to its package."""
+    return any(item.level and not item.lazy for item in facts.imports)
+
+
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -63,7 +78,8 @@ _SOURCES = 6
 
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
-    targets: CMake targets that compile it."""
+    targets: CMake targets that compile it. idle: no file of the package names anything of the namespace, or a macro,
+    that its first folder is called after."""
 
     path: str
     at: At
@@ -71,6 +87,7 @@ class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     public: bool
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
+    idle: bool = False
 
 
 class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -202,7 +219,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. plain_scripts: those
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter, and that import
+    nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter.
     """
@@ -296,14 +314,15 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
 
 
 def role_of_folder(path: str) -> str | None:
-    """`test` or `aside` when a folder of the path says so, else None. path is relative to the package."""
+    """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
+    is relative to the package."""
     parts = path.lower().split("/")[:-1]
     if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
         return "test"
     name = path.rsplit("/", 1)[-1].lower()
     if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
         return "test"
-    if any(part in ASIDE for part in parts) or _ASIDE_NAME.search(name):
+    if any(part in ASIDE or part[:1] == "." for part in parts) or _ASIDE_NAME.search(name):
         return "aside"
     return None
 
@@ -358,22 +377,16 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
+    @cached_method
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
-        known = self._meant.get(text)
-        if known is None:
-            wanted = text
-            while wanted not in self.qualified and "::" in wanted:
-                wanted = wanted.rpartition("::")[0]
-            if wanted not in self.qualified:
-                wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
-            known = self._meant[text] = wanted
-        return known
-
-    @cached_property
-    def _meant(self) -> dict[str, str]:
-        return {}
+        wanted = text
+        while wanted not in self.qualified and "::" in wanted:
+            wanted = wanted.rpartition("::")[0]
+        if wanted not in self.qualified:
+            wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
+        return wanted
 
 
 def digest_of(
@@ -421,7 +434,6 @@ class _Join:
         self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._known: dict[str, KnownFile] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
@@ -443,6 +455,8 @@ class _Join:
     def digest(self) -> LinkedPackage:
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        # Files whose references nobody follows where the package is used.
+        unused = set(self.files) if of_tests else set()
         python: dict[str, PythonFile] = {}
         interpreted = self.interpreted
         shells: list[str] = []
@@ -490,6 +504,8 @@ class _Join:
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
+                    if getattr(facts, "generation", 0) == 1 and self.build_type.startswith("ament"):
+                        unused.add(path)  # left over: the launch system of ROS 2 refuses it
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         if self.build_type == "catkin":  # which starts programs from the source space too
@@ -498,13 +514,20 @@ class _Join:
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
-        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
+        links = {target.name: {link.item for link in target.links} for target in self.build.targets}
+        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined}, links)
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        for path, file in setup if self.build_type in ("ament_python", "catkin") else ():
-            if self.inside(path) == "setup.py" and file.python is not None:
-                syntax.extend(_list_syntax(path, "build", file.python))
+        by_commands = (path for use in self.build.uses for path in use.makes)
+        made = modules.union(part for path in by_commands for part in path.split("/"))
+        run_setup = {
+            path: file.python
+            for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())
+            if self.inside(path) == "setup.py" and file.python is not None
+        }
+        for path, facts in run_setup.items():
+            syntax.extend(_list_syntax(path, "build", facts))
 
         uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return LinkedPackage(
@@ -517,7 +540,7 @@ class _Join:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if of_tests else "run"))
+                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if p in unused else "run"))
                 for p, r in references
             ),
             names=tuple(names + python_names),
@@ -543,8 +566,10 @@ class _Join:
             problems=tuple(problems),
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
-            scripts=tuple(p for p, f in python.items() if f.interpreter),
-            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter)),
+            scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
+            plain_scripts=tuple(
+                p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)
+            ),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
@@ -559,11 +584,14 @@ class _Join:
             undefined=tuple(
                 ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
                 for p, i in (
-                    *list_undefined(python, modules, self.files),
+                    *list_undefined(python, made, self.files),
+                    *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
+                    *list_siblings(python, setup),
+                    *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
-            python_offer=offer_python(python, modules, self.files, self.python_roots(setup)),
+            python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
             own_calls=tuple(self.own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.settings(parameters, launches)),
@@ -699,7 +727,8 @@ class _Join:
                 if to is None:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
-                                   conditions + self.macros.asked(include.conditions, targets), targets)
+                                   conditions + self.macros.asked(include.conditions, targets), targets,
+                                   self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
             reach, types = None, set()
             for name in facts.qualified:
@@ -732,6 +761,19 @@ class _Join:
                     if not any(h in reach for h in headers):
                         needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
+
+    @cached_property
+    def spaces(self) -> frozenset[str]:
+        """First parts of the qualified names and namespaces in C++ files."""
+        names = {name.text for facts in self.cpp.values() for name in facts.qualified}
+        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.types))
+        return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
+
+    @cached_method
+    def is_idle(self, space: str) -> bool:
+        """Whether no C++ file names anything of a namespace, or a macro that is called after it."""
+        macro = f"{space.upper()}_"
+        return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
     def defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
@@ -929,16 +971,13 @@ class _Join:
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
+    @cached_method
     def known(self, path: str) -> KnownFile:
         """What a file declares and uses."""
-        known = self._known.get(path)
-        if known is None:
-            from ..facts.cpp.code import CppCode
-            from .cpp.resolver import KnownFile
+        from ..facts.cpp.code import CppCode
+        from .cpp.resolver import KnownFile
 
-            words = self.spoken(path) if path in self.cpp else frozenset()
-            known = self._known[path] = KnownFile(CppCode(self.read(path)), words)
-        return known
+        return KnownFile(CppCode(self.read(path)), self.spoken(path) if path in self.cpp else frozenset())
 
     @cached_method
     def spoken(self, path: str) -> frozenset[str]:
@@ -998,9 +1037,7 @@ class _Join:
     def bare(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
         """A use of a bare word, with the preprocessor conditions around it."""
         around = self.macros.asked(word.conditions, targets)
-        return NameUse(
-            word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets
-        )
+        return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
     def reach(self, path: str) -> set[str]:
         """All include paths that reach a file, through files of the package."""
@@ -1058,13 +1095,7 @@ class _Join:
 
     def reached(self, path: str) -> list[str]:
         """The file and the files of the package that it includes, directly or not."""
-        stack, seen = [path], {}
-        while stack:
-            at = stack.pop()
-            if at not in seen:
-                seen[at] = None
-                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
-        return list(seen)
+        return list(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...edges.memory import kept_with
 from ..facts.parameters import last_part
 from ..targets.availability import decides
 from ..targets.parameters import renamed_parameters
@@ -67,21 +68,20 @@ def _list_owners(view: TargetView, use: SettingUse) -> Iterator[PackageOffer]:
             yield offer
 
 
+@kept_with
 def _find_starters(view: TargetView) -> dict[str, set[str]]:
     """The packages whose program of a name the workspace builds, or starts from a launch file."""
-    known = view.worked_out.get(("programs", ""))
-    if known is None:
-        known = view.worked_out["programs", ""] = {}
-        for package in view.workspace:
-            names = [target.name for target in package.build.targets if target.kind == "executable"]
-            names += [name for _, setup in package.digest.setup for name, *_ in setup.entry_points]
-            names += [path.rpartition("/")[2].removesuffix(".py") for path in package.digest.scripts]
-            for name in names:
-                known.setdefault(name, set()).add(package.name)
-            for use in package.digest.references:
-                if use.reference.kind == "executable" and use.reference.name:
-                    known.setdefault(use.reference.name, set()).add(use.reference.package)
-    return known
+    found: dict[str, set[str]] = {}
+    for package in view.workspace:
+        names = [target.name for target in package.build.targets if target.kind == "executable"]
+        names += [name for _, setup in package.digest.setup for name, *_ in setup.entry_points]
+        names += [path.rpartition("/")[2].removesuffix(".py") for path in package.digest.scripts]
+        for name in names:
+            found.setdefault(name, set()).add(package.name)
+        for use in package.digest.references:
+            if use.reference.kind == "executable" and use.reference.name:
+                found.setdefault(use.reference.name, set()).add(use.reference.package)
+    return found
 
 
 def _find_offered(view: TargetView, offer: PackageOffer, use: SettingUse) -> Offered | None:

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cached_method
-from ...edges.reach import Reach
+from ...edges.reach import Reach, walk
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
@@ -36,6 +36,7 @@ from .misspelling import SpellingIndex
 from .package import role_of_folder
 from .python.api import python_packages
 from .roles import Roles
+from .unknown_contents import INTERFACES, UnknownContents
 from .workspace import Package, Workspace
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
@@ -77,12 +78,6 @@ def weight(need: Need) -> tuple:
     return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
 
-# How packages of interfaces are called, and what makes interfaces and runs with them.
-_INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
-_WITH_INTERFACES = (
-    "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
-)  # fmt: skip
-
 _DEFINED = re.compile(r"\bDEFINED ENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
 # How packages are called (REP 144).
@@ -116,22 +111,14 @@ class TargetView:
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
         self._whole: dict[str, frozenset[str]] = {}
-        self._possible: dict[str, frozenset[str]] = {}
-        self._spreads: dict[frozenset[str], frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
-        self._modules: dict[str, tuple[Provider, ...]] = {}
-        self._downloaded: dict[str, tuple[str, ...]] = {}
-        self._opaque: dict[str, list[str]] = {}
-        self._unknown: dict[str, tuple[str, ...]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
-        self._interfaces: dict[str, message_headers.Definitions] = {}
-        self._environments: dict[str, Environment] = {}
-        # What rules worked out for each package and several of them ask for.
-        self.worked_out: dict[tuple[str, str], Any] = {}
+        # What others worked out about it, see kept_with().
+        self.derived: dict[Any, Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:
@@ -353,16 +340,15 @@ class TargetView:
             inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
         return () if inner is None else (path, *inner)
 
+    @cached_method
     def _own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
-        known = self._interfaces.get(package)
-        if known is None:
-            known = self._interfaces[package] = message_headers.Definitions()
-            for file in self.workspace.packages[package].digest.interfaces:
-                kind = file.definition.kind
-                known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
-                    file.definition
-                )
+        known = message_headers.Definitions()
+        for file in self.workspace.packages[package].digest.interfaces:
+            kind = file.definition.kind
+            known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
+                file.definition
+            )
         return known
 
     @cached_property
@@ -561,10 +547,7 @@ class TargetView:
         conditions = tuple(conditions)
         if not conditions:
             return True
-        environment = self._environments.get(ahead.name)
-        if environment is None:
-            environment = self._environments[ahead.name] = self._environment_on(ahead.target)
-        return all_hold(conditions, environment) is not False
+        return all_hold(conditions, self._environment_on(ahead.target)) is not False
 
     def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
         """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
@@ -576,6 +559,7 @@ class TargetView:
         """The same on the newest distro."""
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
 
+    @cached_method
     def _environment_on(self, target: Target) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
@@ -655,35 +639,32 @@ class TargetView:
     @cached_method
     def may_bring(self, package: Package) -> frozenset[str]:
         """closure(), and all that packages whose manifests are not known for their version here bring in the next one
-        that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
+        that is, or in any distro: what is not in it is sure to be missing, unless something of unknown_contents
+        may come along."""
         return self.widest_spread(self.closure(package))
 
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
-        found, waiting = set(names), list(names)
-        while waiting:
-            for other in self._possibly_with(waiting.pop()):
-                if other not in found:
-                    found.add(other)
-                    waiting.append(other)
-        return frozenset(found)
+        return frozenset(walk(names, self._possibly_with))
+
+    @cached_property
+    def unknown_contents(self) -> UnknownContents:
+        """What may be there although nobody is known to have it."""
+        return UnknownContents(self)
 
     @cached_property
     def roles(self) -> Roles:
         """What packages have at hand in each role, and what is handed on to them."""
         return Roles(self)
 
+    @cached_method
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages:
             return self._installed_with(name)
-        if name not in self._possible:
-            self._possible[name] = (
-                self.target.possible_dependencies(name)
-                if self.target.dependencies(name) is None
-                else self.target.later_dependencies(name).union(self._installed_with(name))
-            )
-        return self._possible[name]
+        if self.target.dependencies(name) is None:
+            return self.target.possible_dependencies(name)
+        return self.target.later_dependencies(name).union(self._installed_with(name))
 
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
@@ -702,11 +683,11 @@ class TargetView:
 
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
-        start = frozenset(names)
-        known = self._spreads.get(start)
-        if known is None:
-            known = self._spreads[start] = frozenset().union(*map(self._installed_whole, start))
-        return known
+        return self._spread(frozenset(names))
+
+    @cached_method
+    def _spread(self, names: frozenset[str]) -> frozenset[str]:
+        return frozenset().union(*map(self._installed_whole, names))
 
     def _installed_whole(self, name: str) -> frozenset[str]:
         """A name and everything that is installed along with it."""
@@ -728,85 +709,6 @@ class TargetView:
     @cached_method
     def _installed_with(self, name: str) -> tuple[str, ...]:
         return tuple(self.installed_with(name))
-
-    def may_be_downloaded(self, package: Package, header: str) -> bool:
-        """Whether a header or its folder is called after something that the build downloads, or after a folder of the
-        package that was not read, such as a submodule."""
-        if package.name not in self._downloaded:
-            build, folder = package.build, f"{package.path}/" if package.path else ""
-            unread = {path for path in self.workspace.unread if path.startswith(folder)}
-            searched = (*(one for one, _ in build.include_dirs), *(one.item for one in build.links))
-            unread.update(one for one in searched if unread and "$" not in one and self.workspace.is_unread(one))
-            fetched = (t.name for t in build.targets if t.kind in ("fetched", "external"))
-            names = {*fetched, *(part for path in unread for part in path.removeprefix(folder).split("/"))}
-            first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - {"include", "src", "lib"})
-            self._downloaded[package.name] = tuple(one.group() for one in first if one and len(one.group()) > 2)
-        downloaded = self._downloaded[package.name]
-        return bool(downloaded) and any(part.startswith(downloaded) for part in header.lower().split("/"))
-
-    def blind(self, package: Package, name: str = "") -> bool:
-        """True when dependencies of something in the closure are not known anywhere, so that it may lack something; or
-        this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
-        unknown = self._unknown.get(package.name)
-        if unknown is None:
-            unknown = self._unknown[package.name] = self.list_unknown(self.closure(package))
-        if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
-            return any(not _INTERFACES.search(n) for n in unknown)
-        return bool(unknown)
-
-    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
-        """Those of the names whose dependencies are not known anywhere."""
-        target = self.target
-        return tuple(
-            n for n in names
-            if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
-            and not target.known_key(n)  # a key that the platform lacks brings nothing
-            and target.dependencies(n) is None and target.similar_dependencies(n) is None
-            and not target.other_generation(n)  # nor does a package that cannot be had
-        )  # fmt: skip
-
-    def brings_own_build(self, package: Package, wanted: str) -> bool:
-        """Whether something comes along that ROS releases as built with plain CMake or Meson, and that is called after
-        the library of a header or CMake package: it most likely installs what is wanted (`mrpt2`, `mrpt-maps`)."""
-        stem = re.split(r"[^a-z]", wanted.lower())[0]
-        return len(stem) > 2 and any(n.startswith(stem) and self._is_plain_build(n) for n in self.closure(package))
-
-    def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
-        """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
-        (Gazebo and its metapackages come from their own): they may bring any system library. wanted: a header or CMake
-        package; released libraries that are called like it and whose contents are not stored may bring it too."""
-        if package.name not in self._opaque:
-            self._opaque[package.name] = [
-                n for n in self.closure(package)
-                if n not in self.workspace.packages and not n.startswith("python")
-                and (
-                    bringing := [
-                        d for d in self.debian(n)
-                        if d.endswith("-dev") or d.startswith("gazebo") or self._is_unknown_collection(d)
-                    ]
-                )
-                and (n.startswith("gazebo") or not self.providers.knows_system([n, *bringing]))
-            ]  # fmt: skip
-        stem = re.split(r"[^a-z]", wanted.lower())[0]
-        unread = [n for n in self.closure(package) if stem in n and self.is_unread_library(n)] if len(stem) > 2 else []
-        return [*self._opaque[package.name], *unread]
-
-    def _is_unknown_collection(self, debian: str) -> bool:
-        """Whether a package is no library, and of no archive that was read."""
-        return not debian.startswith("lib") and not self.apt.knows(debian)
-
-    def is_unread_library(self, name: str) -> bool:
-        """Whether a plain build, or the build of a library that a package carries, installs what is not stored, or not
-        all of it."""
-        return self._is_plain_build(name) or (name.endswith("_vendor") and name not in self.workspace.packages)
-
-    @cached_method
-    def _is_plain_build(self, name: str) -> bool:
-        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson."""
-        if name in self.workspace.packages or self.target.version(name) is None:
-            return False
-        types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
-        return not types.isdisjoint(("cmake", "meson"))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
@@ -954,29 +856,26 @@ class TargetView:
             ]
         return found
 
+    @cached_method
     def module(self, module: str) -> tuple[Provider, ...]:
         """Who could answer `import module`."""
         head = module.split(".")[0]
-        known = self._modules.get(module)
-        if known is None:
-            owners = self.workspace.modules.get(head, ())
-            if head in owners:
-                owners = [head]
-            found = [Provider("ros", o) for o in owners]
-            if not found and stdlib(module, self.target.python or 99, self.target.python_major):
-                found = [Provider("system", "")]
-            if not found and ever_stdlib(module):
-                found = [Provider("system", "")]  # gone from Python, which python-version says; nobody else's module
-            if not found:
-                found = list(self.providers.module(module))
-                if not any(p.name == head for p in found) and self.is_package(head):
-                    found.insert(0, Provider("ros", head, "", False))
-                if found:
-                    # A key of any name that has pip install what is called as the module.
-                    names = dict.fromkeys((head, head.replace("_", "-")))
-                    found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
-            known = self._modules[module] = tuple(found)
-        return known
+        owners = self.workspace.modules.get(head, ())
+        if head in owners:
+            owners = [head]
+        if owners:
+            return tuple(Provider("ros", owner) for owner in owners)
+        # What is gone from Python is nobody else's module, and python-version says so.
+        if stdlib(module, self.target.python or 99, self.target.python_major) or ever_stdlib(module):
+            return (Provider("system", ""),)
+        found = list(self.providers.module(module))
+        if not any(p.name == head for p in found) and self.is_package(head):
+            found.insert(0, Provider("ros", head, "", False))
+        if found:
+            # A key of any name that has pip install what is called as the module.
+            names = dict.fromkeys((head, head.replace("_", "-")))
+            found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
+        return tuple(found)
 
     @cached_method
     def needs(self, package: Package) -> tuple[Need, ...]:
@@ -997,9 +896,7 @@ class TargetView:
                 yield from self._program_run(found)
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
-            if found.name == package.name or package.name in self.workspace.find_modules.get(
-                found.name, ()
-            ):
+            if found.name == package.name or package.name in self.workspace.find_modules.get(found.name, ()):
                 continue
             providers = self.cmake(found.name) or self._by_form(found.name, found.how == "catkin")
             if not providers:
@@ -1035,7 +932,7 @@ class TargetView:
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
             named = providers[0].kind == "ros" and providers[0].name == include.path.partition("/")[0]
-            if not named and self.may_be_downloaded(package, include.path):
+            if not named and self.unknown_contents.is_made_apart(package, include.path):
                 continue
             if len(providers) > 1 and any(p.name == package.name for p in providers):
                 continue  # the package has one of its own
@@ -1096,7 +993,7 @@ class TargetView:
     def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
         another manifest of the workspace declares it. sure: its place tells that already."""
-        if not _PACKAGE.match(name) or not (sure or _INTERFACES.search(name) or name in self._declared_somewhere):
+        if not _PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self._declared_somewhere):
             return ()
         return (Provider("ros", name),)
 

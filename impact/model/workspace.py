@@ -21,6 +21,7 @@ import msgspec
 
 from ...edges import processes
 from ...edges.limits import limits_stamp
+from ...edges.memory import cached_method
 from ..facts.condition import Condition
 from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
@@ -156,10 +157,8 @@ class Workspace:
         self.identity = identity
         # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
         self.whole = whole
-        self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
-        self._provided: dict[str, list[str]] = {}
-        # What later joins made of it, each under its own type.
-        self.derived: dict[type, Any] = {}
+        # What later joins made of it, see kept_with().
+        self.derived: dict[Any, Any] = {}
 
     def __iter__(self):
         return iter(self.packages.values())
@@ -286,14 +285,9 @@ class Workspace:
                         found.setdefault(match.group(1), package.name)
         return found
 
+    @cached_method
     def provides_header(self, include: str) -> list[str]:
         """Packages of the workspace whose files, or whose generated files, answer an include path."""
-        known = self._provided.get(include)
-        if known is None:
-            known = self._provided[include] = self._provides_header(include)
-        return known
-
-    def _provides_header(self, include: str) -> list[str]:
         owners = self.rooted_headers.get(include) or self.headers.get(include)
         if owners:
             return owners
@@ -321,10 +315,11 @@ class Workspace:
 
     def is_interface_header(self, package: str, rest: str) -> bool:
         """True when `rest` (an include path after `package/`) is generated from an interface of the package."""
-        stems = self._interface_stems.get(package)
-        if stems is None:
-            stems = self._interface_stems[package] = _stems(self.interface_names.get(package, ()))
-        return _names_interface(rest, stems)
+        return _names_interface(rest, self._interface_stems(package))
+
+    @cached_method
+    def _interface_stems(self, package: str) -> tuple[frozenset[str], frozenset[str]]:
+        return _stems(self.interface_names.get(package, ()))
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:
@@ -336,7 +331,7 @@ class Workspace:
             for include in package.digest.includes:
                 head, _, rest = include.path.partition("/")
                 owner = self.packages.get(head)
-                if owner is None or not rest or "_export." in rest or self._provided.get(include.path):
+                if owner is None or not rest or "_export." in rest:
                     continue
                 if owner.manifest.metapackage or not self._closed(owner) or self.provides_header(include.path):
                     continue

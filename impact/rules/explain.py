@@ -42,18 +42,13 @@ def describe_precision(judged: list[BatchPrecision]) -> str:
     return "\n".join(("Precision at first sight", *lines))
 
 
-def summarize(rule: Rule) -> str:
-    """What a rule reports, in the first sentence of its documentation."""
-    return rule.documentation.strip().partition("\n")[0].partition(": ")[2]
-
-
 def list_rules(rules: Mapping[str, Rule]) -> str:
     """All rules by family, and the groups."""
     lines = []
     ordered = sorted(rules.values(), key=lambda rule: (rule.family, rule.name))
     for family, members in groupby(ordered, key=lambda rule: rule.family):
         lines.append(f"{family}:")
-        lines += [f"  {rule.name:26s} {rule.severity:8s} {summarize(rule)}" for rule in members]
+        lines += [f"  {rule.name:26s} {rule.severity:8s} {rule.summary}" for rule in members]
     found = groups(rules)
     if found:
         lines.append("groups (one name for several rules):")
@@ -65,7 +60,7 @@ def explain(name: str, rules: Mapping[str, Rule]) -> str:
     """The documentation of a rule or a group. Raises KeyError for a name that is neither; its text says what is."""
     members = groups(rules).get(name, [])
     others = [rule for rule in members if rule.name != name]
-    listed = "\n".join(f"    {rule.name}: {summarize(rule)}" for rule in others)
+    listed = "\n".join(f"    {rule.name}: {rule.summary}" for rule in others)
     if name in rules:
         own = read_precision().get(name, [])
         documentation = f"{rules[name].documentation.rstrip()}\n\n{describe_precision(own)}"

@@ -1,7 +1,8 @@
 """What a rule is, what it yields, and how rules are found.
 
 A rule is one check, in one module. Its name is the module's, with dashes, and its documentation is the module's
-docstring. It is a generator, registered by `@rule`:
+docstring, to which the section *Severity* is added where it is the same for all findings. It is a generator, registered
+by `@rule`:
 
     @rule(
         scope="change",
@@ -37,6 +38,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
@@ -138,6 +140,11 @@ class Rule(NamedTuple):
         return self.name, self.group or self.name, self.family
 
     @property
+    def summary(self) -> str:
+        """What it reports, in the first sentence of its documentation."""
+        return self.documentation.strip().partition("\n")[0].partition(": ")[2]
+
+    @property
     def has_base(self) -> bool:
         """Whether it compares with a base."""
         return self.scope in ("change", "flow_change")
@@ -200,7 +207,8 @@ def rule(
         name = parts[-1].replace("_", "-")
         usual = _lowest(severity, doubts)
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
-        _RULES[name] = Rule(name, parts[-2], usual, run, module.__doc__ or "", called, preview, doubts, group, texts)
+        documentation = _tell_severity(module.__doc__ or "", usual)
+        _RULES[name] = Rule(name, parts[-2], usual, run, documentation, called, preview, doubts, group, texts)
         return function
 
     return register
@@ -212,6 +220,18 @@ def _run_on_packages(function: Callable[..., Iterable[Diagnostic | Upcoming]]) -
             yield from rate_upcoming(function(view, package))
 
     return run
+
+
+def _tell_severity(documentation: str, usual: str) -> str:
+    """The documentation of a rule; with its severity, where it does not say on what that depends."""
+    if not documentation or "\nSeverity\n" in documentation:
+        return documentation
+    place = _AFTER_SEVERITY.search(documentation)
+    at = place.start() if place is not None else len(documentation.rstrip())
+    return f"{documentation[:at]}\n\nSeverity\n    {usual}.{documentation[at:]}"
+
+
+_AFTER_SEVERITY = re.compile(r"\n\n(?:Example|Not reported)\n")
 
 
 def _lowest(most: str, doubts: tuple[Doubt, ...]) -> str:

@@ -17,7 +17,7 @@ import msgspec
 from ..facts.usage import Pattern
 from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
-from .snapshot import DATA, SnapshotError
+from .snapshot import DATA, SnapshotError, read_table
 from .target import ChangeInForce, Target
 from .version import at_least
 
@@ -121,13 +121,8 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _read(pattern: str, *last: str) -> list[_File]:
     """The files of a pattern. last: those that come last."""
-    found = []
-    for path in sorted(DATA.glob(pattern), key=lambda path: (path.name in last, path.name)):
-        try:
-            found.append(msgspec.json.decode(path.read_bytes(), type=_File))
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
-    return found
+    paths = sorted(DATA.glob(pattern), key=lambda path: (path.name in last, path.name))
+    return [read_table(path, _File) for path in paths]
 
 
 @cache

@@ -8,9 +8,7 @@ from functools import cache
 
 import msgspec
 
-from .snapshot import DATA, SnapshotError
-
-_FILE = DATA / "parameters.json"
+from .snapshot import DATA, read_table
 
 
 class RenamedParameters(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -42,7 +40,4 @@ def renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
 @cache
 def all_renamed() -> list[RenamedParameters]:
     """Every row. Raises SnapshotError."""
-    try:
-        return msgspec.json.decode(_FILE.read_bytes(), type=_File).renamed
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{_FILE}: {error}; install rosimpact again") from None
+    return read_table(DATA / "parameters.json", _File).renamed

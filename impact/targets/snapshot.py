@@ -13,7 +13,7 @@ import os
 import sqlite3
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -23,6 +23,8 @@ from ...edges.memory import cached_method
 from ..cache import cache_folder
 from . import unpacked
 from .unpacked import SnapshotError
+
+T = TypeVar("T")
 
 SCHEMA = """
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
@@ -101,6 +103,24 @@ def shipped_info(data: Path = DATA) -> SnapshotInfo:
         return info
     except (OSError, ValueError, RecursionError) as error:
         raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
+
+
+def read_table(path: Path, kind: type[T]) -> T:
+    """What a shipped file of JSON holds, packed (`.zst`) or not. Raises SnapshotError when it is missing or damaged."""
+    try:
+        raw = path.read_bytes()
+        return msgspec.json.decode(_decompress(raw) if path.suffix == ".zst" else raw, type=kind)
+    except (OSError, ValueError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+def _decompress(packed: bytes) -> bytes:
+    import zstandard
+
+    try:
+        return zstandard.ZstdDecompressor().decompress(packed)
+    except zstandard.ZstdError as error:
+        raise ValueError(str(error)) from None
 
 
 def unpack(data: Path = DATA) -> bytes:

@@ -186,6 +186,10 @@ class Target(Protocol):
         """Every rosdep key that any platform has, or had."""
         ...
 
+    def repository(self, package: str) -> tuple[str, str, str] | None:
+        """(name, source URL, branch) of the repository that releases a package; empty texts where not known."""
+        ...
+
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
         ...

@@ -28,17 +28,15 @@ DOORS = {
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
-                "changes", "distro/conda", "machine/sonames", "parameters", "providers/apt", "providers/includes",
-                "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields",
-                "surface/store",
+                "changes", "machine/sonames", "providers/providers", "snapshot", "surface/fields", "surface/store",
             )),
             _SHIPPED,
         ),
     },
     ".read_text": dict.fromkeys(
         (
-            *("impact/model/cmake/names.py", "impact/model/flow/frameworks.py", "impact/report/json.py"),
-            *("impact/report/page.py", "corpus/label_screen.py"),
+            *("impact/cli/new_rule.py", "impact/model/cmake/names.py", "impact/model/flow/frameworks.py"),
+            *("impact/report/json.py", "impact/report/page.py", "corpus/label_screen.py"),
         ),
         _SHIPPED,
     ),

@@ -130,6 +130,29 @@ SILENT = {
         ),
         ("CMakeLists.txt", "FetchContent_MakeAvailable(Catch2)\n", ""),
     ),
+    "a target of a library that the build downloads": Silent(
+        "removed-cmake-name",
+        ("humble",),
+        ament(
+            "include(FetchContent)\nFetchContent_Declare(yaml-cpp URL https://example.org/y.tar.gz)\n"
+            "FetchContent_MakeAvailable(yaml-cpp)\nfind_package(yaml-cpp REQUIRED)\nadd_executable(weigh weigh.cpp)\n"
+            "target_link_libraries(weigh yaml-cpp::yaml-cpp)",
+            "yaml-cpp",
+            weigh_cpp="int main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "FetchContent_MakeAvailable(yaml-cpp)\n", ""),
+    ),
+    "headers in a folder of the build that an external project fills": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "include(ExternalProject)\nExternalProject_Add(vendored_parser URL https://example.org/y.tar.gz)\n"
+            "add_executable(weigh weigh.cpp)\n"
+            "target_include_directories(weigh PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/yaml/include)",
+            weigh_cpp="#include <yaml-cpp/yaml.h>\nint main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "ExternalProject_Add(vendored_parser URL https://example.org/y.tar.gz)\n", ""),
+    ),
     "a header that is called after what the build downloads": Silent(
         "undeclared-package",
         ("humble",),
@@ -1030,7 +1053,8 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
+            + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",

@@ -13,6 +13,7 @@ from functools import cached_property, lru_cache
 
 from tree_sitter import Node
 
+from ....edges.memory import cached_method
 from ..condition import Condition
 from .flow_clean import cleaned, cleaned_further
 from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
@@ -53,9 +54,7 @@ _LIKE_USING = re.compile(r"using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*
 _LIKE_OPENED = re.compile(r"using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;")
 _LIKE_ALIAS = (re.compile(r"using(?<!\wusing)\s+(\w+)[^=;]{0,200}="),
                re.compile(r"typedef(?<!\wtypedef)\b[^;]{0,1000}?(\w+)\s*;"))  # fmt: skip
-_LIKE_CLASS = [
-    re.compile(rf"{word}(?<!\w{word})\b((?:[^;{{}}<>=:]|::)*)") for word in ("class", "struct", "union")
-]
+_LIKE_CLASS = [re.compile(rf"{word}(?<!\w{word})\b((?:[^;{{}}<>=:]|::)*)") for word in ("class", "struct", "union")]
 _IDENTIFIERS = re.compile(r"[A-Za-z_]\w*")
 _LIKE_DERIVED = [
     re.compile(rb"%b(?<!\w%b)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]" % (word, word)) for word in (b"class", b"struct")
@@ -69,8 +68,6 @@ class CppCode:
 
     def __init__(self, data: bytes):
         self._data = data
-        self._mentioned: dict[str, bool] = {}
-        self._blocks: dict[int, list[tuple[int, str, Node, str]]] = {}
 
     @cached_property
     def _parsed(self) -> tuple[str, str, Node]:
@@ -120,12 +117,10 @@ class CppCode:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
 
+    @cached_method
     def mentions(self, word: str) -> bool:
         """Whether a word may stand in the file, in comments too."""
-        known = self._mentioned.get(word)
-        if known is None:
-            known = self._mentioned[word] = word.encode() in self._data
-        return known
+        return word.encode() in self._data
 
     @cached_property
     def text(self) -> str:
@@ -447,9 +442,13 @@ class CppCode:
 
     def _as_arguments_likely(self, declarator: Node) -> bool:
         listed = declarator.child_by_field_name("parameters")
-        return listed is not None and all(
-            each.kind_id == KIND.parameter_declaration and each.named_child_count == 1 for each in listed_in(listed)
-        ) and bool(listed_in(listed))
+        return (
+            listed is not None
+            and all(
+                each.kind_id == KIND.parameter_declaration and each.named_child_count == 1 for each in listed_in(listed)
+            )
+            and bool(listed_in(listed))
+        )
 
     def _value(self, node: Node | None, path: Sequence[Node], depth: int) -> Expr | None:
         if node is None:
@@ -459,12 +458,10 @@ class CppCode:
             return self._expression(inner[0], path, depth + 1) if len(inner) == 1 else None
         return self._expression(node, path, depth + 1)
 
+    @cached_method
     def _block(self, node: Node) -> list[tuple[int, str, Node, str]]:
         """What a block, loop, lambda or function declares itself: offset, name, node and how."""
-        known = self._blocks.get(node.id)
-        if known is None:
-            known = self._blocks[node.id] = sorted(self._declares(node), key=lambda each: each[0])
-        return known
+        return sorted(self._declares(node), key=lambda each: each[0])
 
     def _declares(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
         number = node.kind_id
@@ -663,9 +660,7 @@ class CppCode:
         if number in (KIND.binary_expression, KIND.unary_expression):
             operator = node.child_by_field_name("operator")
             operands = [
-                each
-                for name in ("left", "right", "argument")
-                if (each := node.child_by_field_name(name)) is not None
+                each for name in ("left", "right", "argument") if (each := node.child_by_field_name(name)) is not None
             ]
             how = "binary" if number == KIND.binary_expression else "unary"
             sign = self._of(operator) if operator is not None else ""
@@ -862,8 +857,10 @@ class _Declarations:
         written = code._of(name)
         full = joined(scope, without_templates(written))
         if body is None:
-            if node.parent is None or node.parent.kind_id not in (KIND.declaration, KIND.field_declaration) or not (
-                node.parent.children_by_field_name("declarator")
+            if (
+                node.parent is None
+                or node.parent.kind_id not in (KIND.declaration, KIND.field_declaration)
+                or not (node.parent.children_by_field_name("declarator"))
             ):
                 self.announced.append(full)
             return

@@ -131,7 +131,6 @@ class Expressions(SourceText):
             return printable(node.value)
         return self.source(node)
 
-
     # Visiting, for calls and uses alone
 
     def visit(self, node) -> None:

@@ -180,7 +180,8 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
     module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
     sets, read by a test. alike: of a variable that nothing can have set, one
-    that is set there and has one word more or less in its name."""
+    that is set there and has one word more or less in its name. makes: of a command, what it may make: its first
+    argument, and its DESTINATION."""
 
     kind: str
     name: str
@@ -188,6 +189,7 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     context: str = ""
     conditions: tuple[Condition, ...] = ()
     alike: str = ""
+    makes: tuple[str, ...] = ()
 
 
 class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -265,5 +267,3 @@ class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
         """The conditions, and that of a declared package."""
         own = self.conditions.get(name)
         return conditions if own is None else (*conditions, own)
-
-

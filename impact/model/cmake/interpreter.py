@@ -7,7 +7,7 @@ variables is joined.
 import itertools
 import posixpath
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from typing import Any
 
@@ -339,7 +339,7 @@ class Interpreter:
         words = self.expand(call.templates)
         self.maybe_set.update(words)
         if name not in BUILTIN_COMMANDS:
-            self.use_command(call)
+            self.use_command(call, words)
             self.pass_sources(call, words)
             self.pass_packages(call, words)
         return NORMAL
@@ -384,8 +384,9 @@ class Interpreter:
         if since and not self.silent and name not in self.definitions:
             self.uses[UnknownCommand("feature", name, self.place(at), since, self.conditions)] = None
 
-    def use_command(self, call: CommandCall) -> None:
-        """Notes a command that neither CMake nor the tree defines."""
+    def use_command(self, call: CommandCall, words: Sequence[Word] = ()) -> None:
+        """Notes a command that neither CMake nor the tree defines. words: its arguments, where what it does is not
+        known."""
         module = MODULE_OF.get(call.name, "")
         # What the configuration of a package finds first may bring the macro for it.
         first = self.handing_on and call.name == "find_dependency" and not self.handed_on
@@ -393,7 +394,11 @@ class Interpreter:
             return
         if module and module in self.modules:
             return
-        self.uses[UnknownCommand("command", call.name, self.place(call.at), module, self.conditions)] = None
+        made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
+        makes = tuple(str(item) for item in made if "$" not in item)
+        self.uses[UnknownCommand("command", call.name, self.place(call.at), module, self.conditions, makes=makes)] = (
+            None
+        )
 
     def run_block(self, block: Block) -> int:
         """Runs a block command."""
@@ -985,8 +990,10 @@ class Interpreter:
         if self.silent or name.startswith("CMAKE_"):
             return
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
-        if not alike and not name.endswith(READ_SUFFIXES) and not (
-            name.startswith("CATKIN_") and self.command == "install"
+        if (
+            not alike
+            and not name.endswith(READ_SUFFIXES)
+            and not (name.startswith("CATKIN_") and self.command == "install")
         ):
             return
         self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None

@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
+from ....edges.memory import cached_method
 from ...facts.flow import (
     Alias,
     Assignment,
@@ -216,7 +217,6 @@ class FlowCode:
         self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
         self._meant: dict[tuple[str, str, str], str] = before._meant if before is not None else {}
         self._meant_types: dict[tuple[str, str, str], FlowType] = before._meant_types if before is not None else {}
-        self._owner_of: dict[int, Cls | None] = {}
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
         self._functions_of: dict[int, list[Fn]] = {}
@@ -383,18 +383,16 @@ class FlowCode:
             for base in one.facts.bases:
                 yield self.meant_type(base, one.source, one.name).name
 
+    @cached_method
     def owner_of(self, fn: Fn) -> Cls | None:
         """The class a function belongs to; that of the function around it for a lambda."""
         if not fn.owner:
             return None
-        key = id(fn)
-        if key not in self._owner_of:
-            found = self.class_of(fn.facts.owner, fn.source, fn.scope)
-            if found is None and fn.owner[:1] == fn.owner[1:2]:
-                # `void a::B::f()` inside `namespace a`
-                found = self.class_of("::".join(fn.owner[1:]), fn.source, fn.scope)
-            self._owner_of[key] = found
-        return self._owner_of[key]
+        found = self.class_of(fn.facts.owner, fn.source, fn.scope)
+        if found is None and fn.owner[:1] == fn.owner[1:2]:
+            # `void a::B::f()` inside `namespace a`
+            found = self.class_of("::".join(fn.owner[1:]), fn.source, fn.scope)
+        return found
 
     def method(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method, of the nearest class that has some; overloads are several."""

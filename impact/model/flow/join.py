@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.flow import FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
@@ -98,7 +100,6 @@ class Join:
         self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
-        self._leading: dict[int, frozenset[int]] = {}
 
     def running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
@@ -253,22 +254,16 @@ class Join:
             known = self._ways[key] = self._walked(fn, functions, 0, ())
         return known
 
+    @cached_method
     def _leads_to(self, fn: Fn) -> frozenset[int]:
         """The functions from which a function may be reached, by their id()."""
-        known = self._leading.get(id(fn))
-        if known is None:
-            found: set[int] = set()
-            queue = [fn]
-            while queue:
-                one = queue.pop()
-                around = self.code.enclosing(one)
-                callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
-                for caller in (*callers, *((around,) if around is not None else ())):
-                    if id(caller) not in found:
-                        found.add(id(caller))
-                        queue.append(caller)
-            known = self._leading[id(fn)] = frozenset(found)
-        return known
+
+        def above(one: Fn) -> list[Fn]:
+            around = self.code.enclosing(one)
+            callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
+            return callers if around is None else [*callers, around]
+
+        return frozenset(map(id, walk(above(fn), above)))
 
     def _walked(self, fn: Fn, functions: set[int] | None, depth: int, seen: tuple[int, ...]) -> list[Way]:
         found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]
@@ -293,9 +288,7 @@ class Join:
             found.append(Way(Trigger(kind, tail(fn.name), fn.source.path, fn.facts.line)))
         return list(dict.fromkeys(found))
 
-    def graph(
-        self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None
-    ) -> Graph:
+    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
         `library` nodes, or to none."""
         running, missing = (self.running(), []) if launch is None else self.started(launch)

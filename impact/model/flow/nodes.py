@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.flow import FlowExpr
 from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .endpoints import Sites
@@ -48,7 +50,6 @@ class CodeReach:
 
     def __init__(self, sites: Sites):
         self.sites, self.code = sites, sites.code
-        self._edges: dict[int, tuple[list[Fn], list[Cls]]] = {}
         self._held: dict[int, list[Cls]] = {}
         # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
         self._loaded: dict[str, str] = {}
@@ -106,30 +107,28 @@ class CodeReach:
                     known.append(inner)
         return known
 
+    @cached_method
     def edges(self, fn: Fn) -> tuple[list[Fn], list[Cls]]:
         """Functions that a function may lead to, and classes of objects that it makes."""
-        known = self._edges.get(id(fn))
-        if known is None:
-            code = self.code
-            further = list(self._lambdas.get((fn.source.path, fn.name), ()))
-            objects: list[Cls] = []
-            for call in fn.facts.calls:
-                further.extend(code.targets(call.callee, fn))
-                for argument in call.arguments:
-                    if argument.kind in _HANDING:
-                        further.extend(self._handed(argument, fn))
-            for name, _, _ in made_in(fn, code):
-                cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
+        code = self.code
+        further = list(self._lambdas.get((fn.source.path, fn.name), ()))
+        objects: list[Cls] = []
+        for call in fn.facts.calls:
+            further.extend(code.targets(call.callee, fn))
+            for argument in call.arguments:
+                if argument.kind in _HANDING:
+                    further.extend(self._handed(argument, fn))
+        for name, _, _ in made_in(fn, code):
+            cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
+            if cls is not None:
+                objects.append(cls)
+        for each in fn.facts.assignments:
+            if each.type and not _points(each.type):
+                kind = code.meant_type(each.type, fn.source, fn.scope)
+                cls = code.class_of(kind.name, fn.source, fn.scope) if kind.name else None
                 if cls is not None:
                     objects.append(cls)
-            for each in fn.facts.assignments:
-                if each.type and not _points(each.type):
-                    kind = code.meant_type(each.type, fn.source, fn.scope)
-                    cls = code.class_of(kind.name, fn.source, fn.scope) if kind.name else None
-                    if cls is not None:
-                        objects.append(cls)
-            known = self._edges[id(fn)] = (further, objects)
-        return known
+        return further, objects
 
     def _handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
         """Functions outside of classes that an argument hands on; methods are reached through their class."""
@@ -193,13 +192,9 @@ def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterato
 
 def _linked(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:
     yield from sources
-    seen, queue = {name}, list(package.links.get(name, ()))
-    while queue:
-        one = queue.pop()
-        if one not in seen:
-            seen.add(one)
+    for one in walk([name], lambda one: package.links.get(one, ())):
+        if one != name:
             yield from package.libraries.get(one, ())
-            queue.extend(package.links.get(one, ()))
 
 
 def _class(code: FlowCode, name: str, package: str, source: CodeFile | None) -> Cls | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from ....edges.memory import kept_with
 from ...facts.extract import ExtractedFacts, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
@@ -69,12 +70,10 @@ class WorkspaceFlow:
         return launches(self._workspace, lambda: self.code, self.jobs)
 
 
+@kept_with
 def flow_of(workspace: Workspace) -> WorkspaceFlow:
     """The message flow of a workspace; the same object for as long as the workspace lives."""
-    found = workspace.derived.get(WorkspaceFlow)
-    if found is None:
-        found = workspace.derived[WorkspaceFlow] = WorkspaceFlow(workspace)
-    return found
+    return WorkspaceFlow(workspace)
 
 
 def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:

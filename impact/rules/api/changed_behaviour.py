@@ -9,9 +9,6 @@ What it does
 Why it matters
     Everything compiles and starts, and one developer's robot does other than another's.
 
-Severity
-    note.
-
 Example
     float angle = cv::minAreaRect(points).angle;      // between -90 and 0 until OpenCV 4.5.1, then between 0 and 90
 

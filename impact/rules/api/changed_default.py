@@ -7,9 +7,6 @@ What it does
 Why it matters
     It compiles everywhere, and does something else for those who have the other version.
 
-Severity
-    note.
-
 Example
     client.get_state();                         // nav2_util waits for 2 s since Humble, and waited for ever
 

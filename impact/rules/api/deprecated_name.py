@@ -8,9 +8,6 @@ What it does
 Why it matters
     The version that drops the name may be on a colleague's machine already.
 
-Severity
-    note.
-
 Example
     rclcpp::executor::FutureReturnCode          // deprecated since Foxy
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
 from ...model.view import TargetView
@@ -83,10 +84,8 @@ class IncludedHeaders:
         found = view.lost_header(path)
         if found is None:
             return None
-        if found.form == "platform" and (
-            view.opaque_libraries(package, path) or view.blind(package) or view.may_be_downloaded(package, path)
-        ):
-            return HeaderLoss(None)  # something that comes along has contents that are not known
+        if found.form == "platform" and view.unknown_contents.may_hold(package, path):
+            return HeaderLoss(None)
         return HeaderLoss(found, found.form)
 
     def _find_row(self, path: str) -> ChangeInForce | None:
@@ -101,12 +100,10 @@ class IncludedHeaders:
         return change if view.has_released_header(change.package, path) is False else None
 
 
+@kept_with
 def included_headers(view: TargetView) -> IncludedHeaders:
     """Those of a view, made once."""
-    key = "included headers", ""
-    if key not in view.worked_out:
-        view.worked_out[key] = IncludedHeaders(view)
-    return view.worked_out[key]
+    return IncludedHeaders(view)
 
 
 # Letters of a file's name: shorter ones are alike by chance.
@@ -153,8 +150,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
         return False
     if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
         return False
-    plain = path.lstrip("./")
-    if view.may_be_downloaded(package, plain) or view.blind(package) or view.opaque_libraries(package, plain):
+    if view.unknown_contents.may_hold(package, path.lstrip("./")):
         return False
     return path.startswith(".") or all(_has_known_headers(view, one) for one in _list_direct(view, package))
 
@@ -174,7 +170,7 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
     if name in view.preinstalled or name.startswith("python"):
         return True
     if view.is_package(name):
-        return view.offers.package(name) is not None and not view.is_unread_library(name)
+        return view.offers.package(name) is not None and not view.unknown_contents.is_carried_library(name)
     keys = (name, *view.debian(name), *(p.package or p.name for p in view.cmake(name)))
     return view.providers.knows_system(keys)
 

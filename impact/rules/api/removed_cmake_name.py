@@ -91,9 +91,7 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
             continue
         if not (lost.library and _may_be_made(view, package, name)):
             alone = not lost.library or not _may_be_built(view, package, name)
-            yield diagnose(
-                lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
-            )
+            yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE))
 
 
 def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
@@ -112,6 +110,7 @@ def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
     return (
         not named
         or bool(package.build.unresolved)
+        or view.unknown_contents.is_made_apart(package, name)
         or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
         or any(provider.kind == "ros" for one in named for provider in view.cmake(one)[:1])
     )

@@ -9,9 +9,6 @@ What it does
 Why it matters
     The fix that one developer applies breaks the build of another: no single spelling works on all targets asked for.
 
-Severity
-    note.
-
 Example
     #include <cv_bridge/cv_bridge.h>            // Humble has only this one, Jazzy only the other
 

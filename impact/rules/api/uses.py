@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...facts.condition import Condition
 from ...model.cmake.build import At
 from ...model.package import CppApiUse, PythonApiUse
@@ -31,23 +32,17 @@ class UnservedUse(NamedTuple):
     sure: bool = True
 
 
+@kept_with
 def list_cpp_uses(view: TargetView, package: Package) -> list[UnservedUse]:
     """Those of C++, in the order of the digest. What the target does not compile, and what reviewed tables speak of is
     left out. What an update of the distro breaks is upcoming."""
-    return _worked_out(view, package, "C++ uses", _list_cpp)
+    return list(_list_cpp(view, package))
 
 
+@kept_with
 def list_python_uses(view: TargetView, package: Package) -> list[UnservedUse]:
     """The same of Python; what the workspace provides is left out."""
-    return _worked_out(view, package, "Python uses", _list_python)
-
-
-def _worked_out(
-    view: TargetView, package: Package, key: str, make: Callable[[TargetView, Package], Iterator[UnservedUse]]
-) -> list[UnservedUse]:
-    if (key, package.name) not in view.worked_out:
-        view.worked_out[key, package.name] = list(make(view, package))
-    return view.worked_out[key, package.name]
+    return list(_list_python(view, package))
 
 
 Ask = Callable[[Offers, PythonOffers], Availability | None]

@@ -6,9 +6,6 @@ What it does
 Why it matters
     A comment that is no longer needed hides the next finding of that kind.
 
-Severity
-    note.
-
 Example
     #include <vector>  // rosimpact: allow(removed-header)
 

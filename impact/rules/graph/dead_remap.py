@@ -8,9 +8,6 @@ What it does
 Why it breaks
     The remapping has no effect and ROS prints no warning: the node keeps the old name.
 
-Severity
-    warning.
-
 Example
     <node pkg="porter_base" exec="base_node">
       <remap from="cmd_val" to="safe/cmd_vel"/>      <!-- the node subscribes to cmd_vel -->

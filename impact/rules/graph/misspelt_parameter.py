@@ -8,9 +8,6 @@ What it does
 Why it breaks
     The value has no effect, and the node runs with its default.
 
-Severity
-    warning.
-
 Example
     base_node:
       ros__parameters:

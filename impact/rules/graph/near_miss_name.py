@@ -9,9 +9,6 @@ What it does
 Why it breaks
     The subscriber never receives a message. ROS prints no warning.
 
-Severity
-    warning.
-
 Example
     self.create_publisher(Odometry, "wheel_odom", 10)
     self.create_subscription(Odometry, "wheels_odom", self.on_odom, 10)

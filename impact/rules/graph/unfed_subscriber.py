@@ -7,9 +7,6 @@ What it does
 Why it matters
     Its callback never runs: the publisher was renamed or removed, or was never written.
 
-Severity
-    note.
-
 Example
     self.create_subscription(BatteryReport, "battery", self.on_battery, 10)      # nothing publishes battery
 

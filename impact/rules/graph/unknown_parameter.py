@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The value has no effect, and the node runs with its default: mostly the name is outdated.
 
-Severity
-    note.
-
 Example
     base_node:
       ros__parameters:

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The client waits forever for the server, or its calls fail.
 
-Severity
-    warning.
-
 Example
     self.create_service(SetCargo, "gripper/set_cargo", self.on_cargo)
     self.create_client(SetCargo, "set_cargo")

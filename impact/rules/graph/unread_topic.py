@@ -7,9 +7,6 @@ What it does
 Why it matters
     The messages are published for nothing, or the subscriber was renamed or never written.
 
-Severity
-    note.
-
 Example
     self.create_publisher(BatteryReport, "battery", 10)          # nothing subscribes to battery
 

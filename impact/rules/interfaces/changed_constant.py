@@ -7,9 +7,6 @@ Why it breaks
     In ROS 2 the type hash does not contain constants: a machine built before the change and one built after it still
     connect, and mean different things by the same number. In ROS 1 the md5 sum changes, and they do not connect.
 
-Severity
-    warning.
-
 Example
     uint8 STOPPED=2                             # was 1
 

@@ -8,9 +8,6 @@ Why it matters
     Subscribers get messages in situations in which there were none before, and perhaps with values that did not occur
     before.
 
-Severity
-    note.
-
 Not reported
     What tightened-publish-condition does not report.
 """

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The program is installed, but stops with a ModuleNotFoundError when it is started.
 
-Severity
-    error.
-
 Example
     entry_points={'console_scripts': ['drive = sled.driver:main']}      # but the module is sled/drive.py
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Set
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
 from ..evidence import circular
@@ -26,12 +27,10 @@ class WrongKind(NamedTuple):
     lacking: str
 
 
+@kept_with
 def list_wrong_kinds(view: TargetView, package: Package) -> list[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
-    key = "wrong kinds", package.name
-    if key not in view.worked_out:
-        view.worked_out[key] = list(_list_wrong_kinds(view, package))
-    return view.worked_out[key]
+    return list(_list_wrong_kinds(view, package))
 
 
 def _list_wrong_kinds(view: TargetView, package: Package) -> Iterator[WrongKind]:

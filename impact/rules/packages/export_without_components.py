@@ -8,9 +8,6 @@ What it does
 Why it breaks
     find_package() of the package stops at the library's configuration, or at a target that it does not define.
 
-Severity
-    warning.
-
 Example
     ament_export_dependencies(Boost)            # and the exported target links Boost::filesystem publicly
 

@@ -11,9 +11,6 @@ Why it breaks
     Python3 alone; pybind11 from 2.6 on then looks for nothing itself, and CMake stops: "Unknown CMake command
     python3_add_library".
 
-Severity
-    warning.
-
 Example
     find_package(Eigen3 REQUIRED)
     find_package(eigen3_cmake_module REQUIRED)

@@ -6,9 +6,6 @@ What it does
 Why it breaks
     Whoever installs the metapackage misses that package.
 
-Severity
-    warning.
-
 Example
     a metapackage `arm` that declares `arm_driver`, `arm_msgs` and `arm_description`, beside an `arm_control`
 

@@ -35,7 +35,7 @@ from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
-_ONCE = (Together("not exported"),)
+_ONCE = (Together("not exported", few=3),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 

@@ -8,9 +8,6 @@ What it does
 Why it breaks
     CMake takes an unknown variable as empty and says nothing: an include folder or a library is missing later on.
 
-Severity
-    warning.
-
 Example
     find_package(OpenCV REQUIRED)
     include_directories(${OPENCV_INCLUDE_DIRS})

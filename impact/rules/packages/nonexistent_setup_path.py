@@ -8,9 +8,6 @@ Why it breaks
     setuptools stops: "can't copy 'resource/sled': doesn't exist or not a regular file", "package directory 'sled' does
     not exist".
 
-Severity
-    error.
-
 Example
     data_files=[('share/sled/launch', ['launch/sled.launch.py'])]       # but the file is launch/sled_launch.py
 

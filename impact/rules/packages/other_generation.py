@@ -7,9 +7,6 @@ What it does
 Why it breaks
     There is no catkin in ROS 2 and no ament in ROS 1. Findings of the other rules on such a target mean nothing.
 
-Severity
-    error.
-
 Example
     rosimpact check catkin_ws/ --target humble
 

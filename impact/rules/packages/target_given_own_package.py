@@ -6,9 +6,6 @@ What it does
 Why it breaks
     CMake stops: the package was not found before.
 
-Severity
-    error.
-
 Example
     ament_target_dependencies(filter rclcpp sonar_filter)       # in the package sonar_filter
 

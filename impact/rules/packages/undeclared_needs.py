@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ...model.misspelling import folded, one_edit
 from ...model.view import Need, TargetView
 from ...model.workspace import Package
@@ -22,22 +23,16 @@ class Undeclared(NamedTuple):
     borrowed: dict[str, list[Need]]
 
 
+@kept_with
 def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
-    key = "undeclared needs", package.name
-    if key not in view.worked_out:
-        view.worked_out[key] = _find_undeclared(view, package)
-    return view.worked_out[key]
-
-
-def _find_undeclared(view: TargetView, package: Package) -> Undeclared:
     closure, declared = view.closure(package), view.declared(package)
     found = Undeclared({}, {})
     elsewhere = {d.name for d in package.manifest.dependencies if not present(view, d.name)}  # for other distros
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        if need.providers[0].kind == "system" and view.brings_own_build(package, need.subject):
+        if need.providers[0].kind == "system" and view.unknown_contents.is_likely(package, need.subject):
             continue
         name = name_to_declare(view, need)
         if name is not None and name != package.name and name not in elsewhere:

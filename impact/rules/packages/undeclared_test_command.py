@@ -21,11 +21,12 @@ Not reported
     Commands whose package is found by name, or along with another one.
 """
 
+from ....edges.memory import kept_with
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.target import Provider
 from ..evidence import present
 from ..rule import Declare, Diagnostic, Doubt, Text, rule
-from .clean_machine import is_grouped
 
 # What the packages that make tests of some kind are made of.
 _TESTS = "ament_cmake_test"
@@ -60,23 +61,21 @@ def undeclared_test_command(view: TargetView, package: Package):
         )
 
 
+@kept_with
 def find_test_commands(view: TargetView) -> dict[str, str]:
     """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
     ament_cmake_test."""
-    known = view.worked_out.get(("test commands", ""))
-    if known is None:
-        known = view.worked_out["test commands", ""] = {
-            command: name
-            for command, owners in view.providers.commands.get(view.target.ros, {}).items()
-            for name in owners.split()
-            if "ament_cmake" in name
-            and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
-        }
-    return known
+    return {
+        command: name
+        for command, owners in view.providers.commands.get(view.target.ros, {}).items()
+        for name in owners.split()
+        if "ament_cmake" in name
+        and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
+    }
 
 
 def _doubts(view: TargetView, package, name: str, conditions) -> tuple[Doubt, ...]:
-    if is_grouped(package) or view.blind(package) or name in view.may_bring(package):
+    if view.unknown_contents.may_come_along(package, name, (Provider("ros", name),)):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)
     return () if sure else (Doubt.CONDITIONAL,)

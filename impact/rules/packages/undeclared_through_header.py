@@ -22,8 +22,10 @@ Not reported
     does not have; code that is not built.
 """
 
-from ...model.view import Need, TargetView
+from ....edges.memory import kept_with
+from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.target import Provider
 from ..rule import Diagnostic, Text, rule
 from .clean_machine import doubts_of_compiled
 
@@ -35,7 +37,7 @@ from .clean_machine import doubts_of_compiled
     ),
 )
 def undeclared_through_header(view: TargetView, package: Package):
-    if not package.digest.includes or view.blind(package):
+    if not package.digest.includes or view.unknown_contents.may_come_along(package):
         return
     closure = view.may_bring(package)
     reported: set[str] = {package.name}
@@ -44,7 +46,7 @@ def undeclared_through_header(view: TargetView, package: Package):
             continue
         if not view.answered(need.providers, closure):
             continue  # undeclared-package reports that
-        for name, header in _follow(view, need):
+        for name, header in _follow(view, need.subject, need.providers[0]):
             if name in reported or view.answered(view.header(header), closure):
                 continue
             reported.add(name)
@@ -57,24 +59,23 @@ def undeclared_through_header(view: TargetView, package: Package):
             )
 
 
-def _follow(view: TargetView, need: Need) -> list[tuple[str, str]]:
-    """The packages of ROS that a released header leads to, besides its own, each with the first header of it."""
-    known = view.worked_out.get(("led to", need.subject))
-    if known is None:
-        found: dict[str, str] = {}
-        seen, waiting = {need.subject}, [need.subject] if need.providers[0].kind == "ros" else []
-        while waiting:
-            for header in view.machine.always_included(waiting.pop()):
-                if header in seen or "/" not in header:
-                    continue
-                seen.add(header)
-                providers = view.header(header)
-                if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
-                    continue
-                name = providers[0].name
-                if name == need.providers[0].name:
-                    waiting.append(header)
-                elif view.target.version(name):
-                    found.setdefault(name, header)
-        known = view.worked_out["led to", need.subject] = list(found.items())
-    return known
+@kept_with
+def _follow(view: TargetView, start: str, owner: Provider) -> list[tuple[str, str]]:
+    """The packages of ROS that a released header of a package leads to, besides its own, each with the first header of
+    it."""
+    found: dict[str, str] = {}
+    seen, waiting = {start}, [start] if owner.kind == "ros" else []
+    while waiting:
+        for header in view.machine.always_included(waiting.pop()):
+            if header in seen or "/" not in header:
+                continue
+            seen.add(header)
+            providers = view.header(header)
+            if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
+                continue
+            name = providers[0].name
+            if name == owner.name:
+                waiting.append(header)
+            elif view.target.version(name):
+                found.setdefault(name, header)
+    return list(found.items())

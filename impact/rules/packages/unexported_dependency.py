@@ -8,9 +8,6 @@ Why it breaks
     A dependant that includes the public header finds the header's own includes missing, or links a library that it does
     not have.
 
-Severity
-    warning.
-
 Example
     <build_depend>tf2_geometry_msgs</build_depend>      # and include/p/p.hpp includes its headers
 

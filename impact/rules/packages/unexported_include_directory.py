@@ -10,9 +10,6 @@ What it does
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".
 
-Severity
-    warning.
-
 Example
     install(DIRECTORY include/ DESTINATION include)
 

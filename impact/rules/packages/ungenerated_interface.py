@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
 
-Severity
-    warning.
-
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg")      # and there is msg/Winch.msg
 

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The linker reports undefined references.
 
-Severity
-    warning.
-
 Example
     target_link_libraries(writer yaml-cpp)      # and reader.cpp of the program `reader` includes yaml-cpp/yaml.h too
 

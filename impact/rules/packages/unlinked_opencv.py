@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The linker reports undefined references.
 
-Severity
-    error.
-
 Example
     target_link_libraries(viewer ${catkin_LIBRARIES})       # of cv_bridge, and viewer.cpp calls cv::imshow
 

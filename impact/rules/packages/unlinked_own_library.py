@@ -9,9 +9,6 @@ Why it breaks
     The linker reports undefined references for programs. A shared library is linked without an error, and fails where a
     program links or loads it.
 
-Severity
-    warning.
-
 Example
     add_library(arm SHARED src/arm.cpp)
     add_executable(wave src/wave.cpp)           # which includes arm/arm.hpp and calls functions of its class

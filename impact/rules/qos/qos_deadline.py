@@ -6,9 +6,6 @@ What it does
 Why it breaks
     The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
-Severity
-    warning.
-
 Example
     create_publisher<Imu>("imu", rclcpp::QoS(5).deadline(200ms));
     create_subscription<Imu>("imu", rclcpp::QoS(5).deadline(100ms), on_imu);

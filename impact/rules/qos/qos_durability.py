@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The two are not connected and no message arrives, not even a new one; the running nodes warn about incompatible QoS.
 
-Severity
-    warning.
-
 Example
     create_publisher<OccupancyGrid>("map", 1);                                   // 1: volatile
     create_subscription<OccupancyGrid>("map", rclcpp::QoS(1).transient_local(), on_map);

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
-Severity
-    warning.
-
 Example
     create_publisher<Imu>("imu", rclcpp::QoS(5).liveliness(RMW_QOS_POLICY_LIVELINESS_AUTOMATIC));
     create_subscription<Imu>("imu", rclcpp::QoS(5).liveliness(RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC), on_imu);

@@ -7,9 +7,6 @@ What it does
 Why it breaks
     The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
-Severity
-    warning.
-
 Example
     create_publisher<LaserScan>("scan", rclcpp::SensorDataQoS());
     create_subscription<LaserScan>("scan", 10, on_scan);                         // 10: reliable

@@ -5,9 +5,6 @@ What it does
 
 Why it matters
     Faults of the distro are no longer fixed, and packages may be removed from its archives.
-
-Severity
-    note.
 """
 
 from ...model.cmake.build import At

@@ -6,9 +6,6 @@ What it does
 Why it breaks
     CMake stops with this message when it configures the package.
 
-Severity
-    error.
-
 Example
     if("$ENV{ROS_DISTRO}" STREQUAL "humble")
       add_compile_definitions(ROS_HUMBLE)

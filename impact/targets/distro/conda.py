@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 
-import msgspec
-
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 
 CHANNELS = frozenset(("conda-forge", "robostack"))
 """Platforms that this knows: conda-forge, and RoboStack, which holds a distro's packages to versions of its own."""
@@ -17,10 +15,7 @@ _Rows = dict[str, dict[str, str]]
 
 @cache
 def _table() -> dict[str, _Rows]:
-    try:
-        return msgspec.json.decode((DATA / "conda.json").read_bytes(), type=dict[str, _Rows])
-    except (OSError, msgspec.DecodeError):
-        raise SnapshotError("conda.json cannot be read; install rosimpact again") from None
+    return read_table(DATA / "conda.json", dict[str, _Rows])
 
 
 def libraries_of(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:

@@ -19,6 +19,7 @@ import msgspec
 
 from ....edges.console import UserError
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
@@ -300,7 +301,6 @@ class DistroTarget(Target):
         return steps[0][0] if steps else ""
 
     def repository(self, package: str) -> tuple[str, str, str] | None:
-        """(name, source URL, branch) of the repository that releases a package here; empty texts where not known."""
         released = self._packages().get(package)
         if released is None:
             return None
@@ -481,15 +481,11 @@ class DistroTarget(Target):
         The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
         """
         wanted = frozenset(kinds)
-        seen: set[str] = set()
-        waiting = [package]
-        while waiting:
-            for dependency in self.dependencies(waiting.pop()) or ():
-                if dependency.kind in wanted and dependency.name not in seen:
-                    seen.add(dependency.name)
-                    waiting.append(dependency.name)
-        seen.discard(package)
-        return frozenset(seen)
+
+        def along(name: str) -> Iterable[str]:
+            return (dependency.name for dependency in self.dependencies(name) or () if dependency.kind in wanted)
+
+        return frozenset(walk([package], along)) - {package}
 
     # rosdep keys
 

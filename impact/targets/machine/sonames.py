@@ -12,7 +12,7 @@ from pathlib import Path
 import msgspec
 
 from ...facts.elf import stem_and_version
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, SnapshotError, read_table
 from ..version import number_of
 
 FILE = "sonames.json.zst"
@@ -118,13 +118,9 @@ def numbers_of(version: str) -> list[int]:
 def default_sonames(data: Path = DATA) -> Sonames:
     """The shipped table. Raises SnapshotError when it is missing or damaged."""
     import yaml
-    import zstandard
 
-    path = data / FILE
+    table, path = read_table(data / FILE, SonamesTable), data / "sonames.yaml"
     try:
-        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        table = msgspec.json.decode(raw, type=SonamesTable)
-        reviewed = msgspec.convert(yaml.safe_load((data / "sonames.yaml").read_bytes()), type=Reviewed)
-        return Sonames(table, reviewed)
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError, ValueError) as error:
+        return Sonames(table, msgspec.convert(yaml.safe_load(path.read_bytes()), type=Reviewed))
+    except (OSError, ValueError) as error:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None

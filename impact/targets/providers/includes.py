@@ -16,7 +16,7 @@ import msgspec
 
 from ....edges.memory import cached_method
 from ....edges.reach import Reach
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 from ..version import at_least, parts
 from . import message_headers
 from .libraries import system_libraries
@@ -95,14 +95,7 @@ class Includes:
 @cache
 def default() -> Includes:
     """The shipped table. Raises SnapshotError when it cannot be read."""
-    import zstandard
-
-    path = DATA / "includes.json.zst"
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return Includes(msgspec.json.decode(raw, type=IncludesTable))
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return Includes(read_table(DATA / "includes.json.zst", IncludesTable))
 
 
 _INCLUDE_FOLDERS = ("eigen3/Eigen/", "eigen3/unsupported/", "opencv4/opencv2/")
@@ -168,8 +161,6 @@ class HeadersOfMachine:
     ):
         self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
         self._platform = platform
-        self._known: dict[str, _Found | None] = {}
-        self._holding: dict[tuple[Condition, ...], bool] = {}
         self._reach = Reach(self._look)
         # Of what was reached: headers of the standard libraries, and those of which nothing is known here.
         self._plain = self._unknown = 0
@@ -230,20 +221,19 @@ class HeadersOfMachine:
             if (included := self.surfaces.included(package, ros)) is not None
         )
 
+    @cached_method
     def _find(self, header: str) -> _Found | None:
         if header.startswith(_INCLUDE_FOLDERS):
             header = header.partition("/")[2]
-        if header not in self._known:
-            libraries = self._data.table.libraries
-            owners = self._data.owners_of.get(header, ())
-            self._known[header] = (
-                self._in_table(header, (owner for owner in owners if owner in libraries))
-                or self._in_surfaces(header)
-                or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
-                or self._made(header)
-                or self._in_libraries(header)
-            )
-        return self._known[header]
+        libraries = self._data.table.libraries
+        owners = self._data.owners_of.get(header, ())
+        return (
+            self._in_table(header, (owner for owner in owners if owner in libraries))
+            or self._in_surfaces(header)
+            or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
+            or self._made(header)
+            or self._in_libraries(header)
+        )
 
     def _in_table(self, header: str, owners: Iterable[str]) -> _Found | None:
         for owner in owners:
@@ -284,15 +274,13 @@ class HeadersOfMachine:
         standing = included.stands_for(version) if version and included is not None else None
         return (included, standing, version) if included and standing and version else None
 
+    @cached_method
     def _may_hold(self, conditions: tuple[Condition, ...]) -> bool:
         if not conditions:
             return True
-        known = self._holding.get(conditions)
-        if known is None:
-            from ...conditions import all_hold
+        from ...conditions import all_hold
 
-            known = self._holding[conditions] = all_hold(conditions, self._environment) is not False
-        return known
+        return all_hold(conditions, self._environment) is not False
 
     @cached_property
     def _environment(self) -> Environment:
@@ -434,6 +422,7 @@ class HeadersOfMachine:
 
 def machine(target: Target) -> HeadersOfMachine:
     """The headers that a target has."""
+
     def version(name: str, library: bool) -> str | None:
         return target.library(name) if library else target.version(name)
 
@@ -469,11 +458,7 @@ class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 @cache
 def offered() -> dict[str, tuple[str, ...]]:
     """Names to the headers that offer them: types that some header stopped bringing along, and much used ones."""
-    path = DATA / "offers.json"
-    try:
-        reviewed = msgspec.json.decode(path.read_bytes(), type=_Offers).names
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    reviewed = read_table(DATA / "offers.json", _Offers).names
     return {**default().table.names, **reviewed}
 
 

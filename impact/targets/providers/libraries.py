@@ -34,16 +34,6 @@ NEAREST = 4
 _NAMED = ("cmake_names", "targets", "unknown")
 
 
-class Linking(NamedTuple):
-    """How a header's library is linked. compiled: its package has something to link; libraries: that, without `lib`.
-    names: CMake packages and targets, pkg-config files and variables that bring it."""
-
-    library: str
-    compiled: bool
-    libraries: tuple[str, ...]
-    names: tuple[str, ...]
-
-
 class Including(NamedTuple):
     """What a header of a version of a library includes."""
 
@@ -200,30 +190,6 @@ class SystemLibraries:
     def _roots(self, library: str) -> tuple[str, ...]:
         """The folders that flags name in any version."""
         return tuple(self._first("SELECT roots FROM package WHERE name = ?", library).split())
-
-    @cached_method
-    def linking(self, header: str, platform: str) -> Linking | None:
-        """How to link the library of a header; None where it is of no library that was read, or a release of it was
-        not. Of several versions the platform's counts, or the one that is nearest."""
-        library = self.of_header(header)
-        version = next(filter(None, self.around(library, platform)), "") if library else ""
-        build = self.build(library, version) if version else None
-        if build is None:
-            return None
-        states = (self._state(library, version, path) for path in _written(header, build.include_dirs))
-        stored = next(filter(None, states), None)
-        if stored is None:
-            return None
-        libraries = tuple(stored[1].links.split())
-        mine = set(libraries)
-        configs = (one.split(" ") for one in build.pkgconfig)
-        names = (
-            *build.cmake_names,
-            *(target.name for target in build.targets),
-            *(name for name, *stems in configs if mine.intersection(stems)),
-            *build.variables,
-        )
-        return Linking(library, bool(libraries), libraries, names)
 
     @cached_method
     def folder(self, header: str) -> str:

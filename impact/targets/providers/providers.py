@@ -10,14 +10,14 @@ import sqlite3
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
 from ....edges.memory import cached_method
 from ...cache import cache_folder
 from .. import unpacked
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, SnapshotError, read_table
 from ..target import Provider
 from ..version import parts
 
@@ -77,8 +77,6 @@ class Providers:
     def __init__(self, data: Path = DATA, cache: Path | None = None):
         self._data, self._cache = data, cache
         self._file = unpacked.UnpackedFile(self._contents, self._place, "fact")
-        self._sets: dict[int, tuple[Provider, ...]] = {}
-        self._patterns: dict[str, tuple[int, ...]] = {}
 
     def __reduce__(self):
         return Providers, (self._data, self._cache)
@@ -142,20 +140,13 @@ class Providers:
     @cached_property
     def _find_modules(self) -> dict[str, dict[str, list[str]]]:
         """What CMake's find modules look for, see databuild/find_modules.py."""
-        return self._read("find_modules.json", dict[str, dict[str, list[str]]])
+        return read_table(self._data / "find_modules.json", dict[str, dict[str, list[str]]])
 
     @cached_property
     def commands(self) -> dict[int, dict[str, str]]:
         """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
         databuild/commands.py."""
-        return self._read("commands.json", dict[int, dict[str, str]])
-
-    def _read(self, name: str, type_: Any) -> Any:
-        path = self._data / name
-        try:
-            return msgspec.json.decode(path.read_bytes(), type=type_)
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        return read_table(self._data / "commands.json", dict[int, dict[str, str]])
 
     def spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
@@ -253,11 +244,12 @@ class Providers:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
         if not _within(self.known_releases(package), distro, version):
             return None
-        numbers = self._patterns.get(package)
-        if numbers is None:
-            rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
-            numbers = self._patterns[package] = tuple(number for (number,) in rows)
-        return any(_within(self._pattern(number), distro, version) for number in numbers)
+        return any(_within(self._pattern(number), distro, version) for number in self._patterns(package))
+
+    @cached_method
+    def _patterns(self, package: str) -> list[int]:
+        rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
+        return [number for (number,) in rows]
 
     def _vendors(self, key: str) -> list[Provider]:
         return self._facts("vendor", key)
@@ -285,11 +277,13 @@ class Providers:
         if row is None:
             return []
         number, platforms = row
-        known = self._sets.get(number)
-        if known is None:
-            ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
-            known = self._sets[number] = tuple(_decode(entries))
+        known = self._set(number)
         return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
+
+    @cached_method
+    def _set(self, number: int) -> tuple[Provider, ...]:
+        ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+        return tuple(_decode(entries))
 
     @cached_method
     def _row(self, table: str, name: str) -> tuple[int, int] | None:
@@ -341,12 +335,11 @@ class Providers:
 
     def _read_info(self) -> tuple[str, bytes]:
         """The hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
-        info = self._data / "providers.json"
+        sha256 = read_table(self._data / "providers.json", _Info).sha256
         try:
-            facts = (self._data / "providers.yaml").read_bytes()
-            return msgspec.json.decode(info.read_bytes(), type=_Info).sha256, facts
-        except (OSError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
+            return sha256, (self._data / "providers.yaml").read_bytes()
+        except OSError as error:
+            raise SnapshotError(f"{error}; install rosimpact again") from None
 
 
 def _once(providers: list[Provider]) -> list[Provider]:

@@ -12,69 +12,37 @@ from functools import cache
 
 import msgspec
 
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 
-_DEFINED: dict[tuple[str, ...], str] = {
-    ("algorithm", "bits/stl_algo"): (
-        "sort stable_sort find_if copy_n copy_if remove_if transform count_if count max_element min_element "
-        "minmax_element reverse replace for_each unique binary_search upper_bound nth_element any_of all_of none_of "
-        "clamp shuffle random_shuffle generate set_difference partial_sort rotate search merge includes "
-        "next_permutation partition remove find minmax"
-    ),
-    ("algorithm", "bits/stl_algobase"): "min max fill copy lower_bound",
-    ("any",): "any",
-    ("array",): "array",
-    ("atomic",): "atomic",
-    ("bitset",): "bitset",
-    ("cmath", "math.h"): "isnan isinf isfinite sqrt hypot fabs atan2 round",
-    ("complex",): "complex",
-    ("condition_variable",): "condition_variable",
-    ("cstdint",): "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t",
-    ("deque", "bits/stl_deque"): "deque",
-    ("fstream",): "ifstream ofstream",
-    ("functional",): "bind mem_fn placeholders::_1 placeholders::_2 placeholders::_3",
-    ("functional", "bits/refwrap"): "ref cref",
-    ("functional", "bits/std_function"): "function",
-    ("future",): "future promise async",
-    ("iomanip",): "setprecision setw setfill",
-    ("iostream",): "cout cerr",
-    ("iterator",): "ostream_iterator istream_iterator",
-    ("limits",): "numeric_limits",
-    ("list", "bits/stl_list"): "list",
-    ("map", "bits/stl_map"): "map",
-    ("memory", "bits/shared_ptr"): "shared_ptr weak_ptr make_shared",
-    ("memory", "bits/unique_ptr"): "unique_ptr make_unique",
-    ("mutex",): "recursive_mutex call_once once_flag",
-    ("mutex", "bits/std_mutex"): "mutex lock_guard",
-    ("mutex", "bits/unique_lock"): "unique_lock",
-    ("numeric",): "accumulate iota inner_product",
-    ("optional",): "optional nullopt",
-    ("queue",): "queue priority_queue",
-    ("regex",): "regex smatch",
-    ("set", "bits/stl_set"): "set",
-    ("shared_mutex",): "shared_mutex shared_lock",
-    ("sstream",): "stringstream ostringstream istringstream",
-    ("stack",): "stack",
-    ("stdexcept",): "runtime_error logic_error invalid_argument out_of_range length_error domain_error",
-    ("string_view",): "string_view",
-    ("system_error",): "system_error",
-    ("thread", "bits/std_thread"): "thread",
-    ("thread", "bits/this_thread_sleep"): "this_thread::sleep_for this_thread::sleep_until",
-    ("tuple",): "tuple make_tuple",
-    ("unordered_map",): "unordered_map",
-    ("unordered_set",): "unordered_set",
-    ("utility",): "exchange",
-    ("utility", "bits/stl_pair"): "pair make_pair",
-    ("variant",): "variant",
-    ("vector", "bits/stl_vector"): "vector",
-}
-"""The headers that define names of `std`, the public one first; a `bits/` one is libstdc++'s own that does."""
+
+class _Headers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What data/std_headers.json holds. since: standard headers by the C++ standard that they are of. defined: names of
+    `std` with the headers that define them, the public one first; a `bits/` one is libstdc++'s own that does.
+    brought_by_c: what headers of C and POSIX define: of a header above (`bits/` for glibc's own, which has the types
+    only, with or without a sign), those that bring it."""
+
+    class Defined(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+        """Names with the headers that define them."""
+
+        headers: tuple[str, ...]
+        names: str
+
+    since_source: str
+    since: dict[int, str]
+    brought_by_c_source: str
+    brought_by_c: dict[str, str]
+    defined: list[Defined]
+
+
+_KNOWN = read_table(DATA / "std_headers.json", _Headers)
 
 DEFINED_IN: dict[str, tuple[str, ...]] = {
-    **{f"std::{name}": headers for headers, names in _DEFINED.items() for name in names.split()},
+    **{f"std::{name}": row.headers for row in _KNOWN.defined for name in row.names.split()},
     **{
         name: ("cstdint", "stdint.h", f"bits/stdint-{'uintn' if name[0] == 'u' else 'intn'}")
-        for name in _DEFINED["cstdint",].split()
+        for row in _KNOWN.defined
+        if row.headers == ("cstdint",)
+        for name in row.names.split()
     },
     **dict.fromkeys(("FLT_MAX", "FLT_MIN", "FLT_EPSILON", "DBL_MAX", "DBL_MIN", "DBL_EPSILON"), ("cfloat", "float.h")),
     **dict.fromkeys(("INT_MAX", "INT_MIN", "UINT_MAX", "LONG_MAX"), ("climits", "limits.h")),
@@ -88,72 +56,16 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
 }
 """Every name to the headers that define it, likewise."""
 
-HEADER_SINCE: dict[str, int] = {
-    **dict.fromkeys(
-        (
-            *("array", "atomic", "chrono", "condition_variable", "forward_list", "future", "initializer_list", "mutex"),
-            *("random", "ratio", "regex", "scoped_allocator", "system_error", "thread", "tuple", "type_traits"),
-            *("typeindex", "unordered_map", "unordered_set", "cfenv", "cinttypes", "cstdint"),
-        ),
-        11,
-    ),
-    "shared_mutex": 14,
-    **dict.fromkeys(
-        ("any", "charconv", "execution", "filesystem", "memory_resource", "optional", "string_view", "variant"), 17
-    ),
-    **dict.fromkeys(
-        (
-            *("barrier", "bit", "compare", "concepts", "coroutine", "latch", "numbers", "ranges", "semaphore"),
-            *("source_location", "span", "stop_token", "syncstream"),
-        ),
-        20,
-    ),
-}
+HEADER_SINCE = {header: standard for standard, headers in _KNOWN.since.items() for header in headers.split()}
 """Standard headers to the C++ standard that they are of: libstdc++'s stop the compiler below C++11, and are empty below
-a later one. Source: cppreference.com, "Standard library headers"; libstdc++'s bits/c++0x_warning.h."""
-
-
-_BROUGHT_BY_C = {
-    "stdint.h": (
-        "arpa/nameser.h complex.h elf.h inttypes.h link.h net/ethernet.h net/if_arp.h net/if_ppp.h "
-        "net/if_shaper.h netinet/ether.h netinet/icmp6.h netinet/if_ether.h netinet/if_fddi.h netinet/if_tr.h "
-        "netinet/in_systm.h netinet/ip6.h netinet/ip_icmp.h netinet/tcp.h netinet/udp.h netipx/ipx.h nss.h "
-        "protocols/talkd.h resolv.h sys/acct.h sys/auxv.h sys/epoll.h sys/eventfd.h sys/fanotify.h sys/inotify.h "
-        "sys/mount.h sys/raw.h sys/rseq.h sys/signalfd.h tgmath.h thread_db.h"
-    ),
-    "bits/stdint-uintn": (
-        "arpa/inet.h linux/fuse.h linux/idxd.h linux/mptcp.h linux/netfilter_bridge.h "
-        "linux/netfilter_bridge/ebtables.h net/route.h netdb.h netinet/igmp.h netinet/in.h netinet/ip.h"
-    ),
-    "bits/stdint-intn": (
-        "aio.h aliases.h arpa/inet.h fts.h ftw.h ifaddrs.h lastlog.h linux/atmbr2684.h linux/bpfilter.h "
-        "linux/fuse.h linux/gsmmux.h linux/icmp.h linux/idxd.h linux/if.h linux/if_arp.h linux/if_bonding.h "
-        "linux/if_pppox.h linux/if_tunnel.h linux/input.h linux/ip6_tunnel.h linux/joystick.h linux/llc.h "
-        "linux/mctp.h linux/mptcp.h linux/netdevice.h linux/netfilter/xt_RATEEST.h linux/netfilter/xt_hashlimit.h "
-        "linux/netfilter/xt_physdev.h linux/netfilter/xt_rateest.h linux/netfilter_arp/arp_tables.h "
-        "linux/netfilter_arp/arpt_mangle.h linux/netfilter_bridge.h linux/netfilter_bridge/ebtables.h "
-        "linux/netfilter_ipv4/ip_tables.h linux/netfilter_ipv6/ip6_tables.h linux/route.h linux/uhid.h "
-        "linux/uinput.h linux/vm_sockets.h linux/wireless.h math.h mqueue.h net/if.h net/route.h netatalk/at.h "
-        "netdb.h netinet/igmp.h netinet/in.h netinet/ip.h netrose/rose.h proc_service.h protocols/routed.h "
-        "protocols/rwhod.h protocols/timed.h re_comp.h regex.h semaphore.h spawn.h stdlib.h sys/bitypes.h "
-        "sys/fsuid.h sys/gmon.h sys/mtio.h sys/param.h sys/procfs.h sys/profil.h sys/quota.h sys/random.h "
-        "sys/sem.h sys/sendfile.h sys/socket.h sys/socketvar.h sys/types.h sys/uio.h sys/xattr.h utmp.h"
-    ),
-    "limits.h": "argp.h arpa/nameser.h resolv.h sys/param.h values.h",
-    "math.h": "complex.h tgmath.h",
-    "float.h": "values.h",
-    "unistd.h": "arpa/nameser.h resolv.h signal.h sys/param.h sys/signal.h sys/unistd.h sys/wait.h wait.h",
-}
-"""What headers of C and POSIX define: of a header above (`bits/` for glibc's own, which has the types only, with or
-without a sign), those that bring it. Found by compiling each header of glibc 2.36 and Linux 6.1 alone as C++, with a
-use of one name."""
+a later one."""
 
 
 @cache
 def _of_c() -> dict[str, frozenset[str]]:
-    """The same by header: what it brings."""
+    """What headers of C and POSIX bring, by header."""
     found: dict[str, set[str]] = {}
-    for brought, headers in _BROUGHT_BY_C.items():
+    for brought, headers in _KNOWN.brought_by_c.items():
         for header in headers.split():
             found.setdefault(header, set()).add(brought)
     return {header: frozenset(brought) for header, brought in found.items()}
@@ -161,11 +73,7 @@ def _of_c() -> dict[str, frozenset[str]]:
 
 @cache
 def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
-    path = DATA / "providers_std.json"
-    try:
-        read = msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, str]])
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    read = read_table(DATA / "providers_std.json", dict[str, dict[str, str]])
     return tuple(
         (int(major), {header: frozenset(text.split()) for header, text in table.items()})
         for major, table in sorted(read.items(), key=lambda item: int(item[0]))
@@ -202,14 +110,7 @@ class StandardNames(msgspec.Struct, frozen=True):
 @cache
 def names() -> StandardNames:
     """The names that are known. Raises SnapshotError when the data cannot be read."""
-    import zstandard
-
-    path = DATA / "std_names.json.zst"
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
-        return msgspec.json.decode(raw, type=StandardNames)
-    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return read_table(DATA / "std_names.json.zst", StandardNames)
 
 
 @cache

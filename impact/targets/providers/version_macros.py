@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 from ..version import at_least, parts
 
 
@@ -55,10 +55,6 @@ def version_test(package: str, library: bool, version: str, *, ros: int, oldest:
 
 @cache
 def _rows() -> dict[tuple[str, bool], _Row]:
-    path = DATA / "version_macros.json"
-    try:
-        file = msgspec.json.decode(path.read_bytes(), type=_File)
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    file = read_table(DATA / "version_macros.json", _File)
     return {(name, library): row for rows, library in ((file.macros, False), (file.libraries, True)) for row in rows
             for name in row.packages}  # fmt: skip
