@@ -175,13 +175,10 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
     return view.providers.knows_system(keys)
 
 
+@kept_with
 def _file_names(view: TargetView) -> frozenset[str]:
     """The names of all files of the workspace."""
-    key = "names of files", ""
-    if key not in view.worked_out:
-        files = (path for package in view.workspace for path in package.digest.files)
-        view.worked_out[key] = frozenset(path.rpartition("/")[2] for path in files)
-    return view.worked_out[key]
+    return frozenset(path.rpartition("/")[2] for package in view.workspace for path in package.digest.files)
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:
