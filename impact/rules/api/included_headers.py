@@ -178,7 +178,8 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
 @kept_with
 def _file_names(view: TargetView) -> frozenset[str]:
     """The names of all files of the workspace."""
-    return frozenset(path.rpartition("/")[2] for package in view.workspace for path in package.digest.files)
+    files = (path for package in view.workspace for path in package.digest.files)
+    return frozenset(path.rpartition("/")[2] for path in files)
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:
