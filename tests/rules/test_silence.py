@@ -1053,8 +1053,7 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
-            + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",

@@ -79,7 +79,7 @@ TEAM["team/package.xml"] = TEAM["team/package.xml"].replace("<export>", "<export
 BUNDLE = ament("kit", "", "exec_depend:ament_cmake_cpplint")
 VENDOR = (
     "include(ExternalProject)\nExternalProject_Add(ice GIT_REPOSITORY https://example.org/ice.git\n"
-    '  PATCH_COMMAND patch -p1 UPDATE_COMMAND "")\n'
+    "  PATCH_COMMAND patch -p1 UPDATE_COMMAND \"\")\n"
 )
 NODE = {"sled/sled/__init__.py": "", "sled/sled/node.py": "import yaml\n"}
 MODULE = "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(sled)\n"

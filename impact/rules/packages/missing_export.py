@@ -35,7 +35,8 @@ from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
-_ONCE = (Together("not exported", few=3),)
+_ONCE = (Together("not exported"),)
+_EACH = (Together("not exported", few=3),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 
@@ -89,9 +90,9 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
-                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=_ONCE)
+                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=_EACH)
                 continue
-            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=_ONCE)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=_EACH)
 
 
 def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:

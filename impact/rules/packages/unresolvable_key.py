@@ -166,9 +166,9 @@ def _find_reworded(view: TargetView, name: str) -> str:
     words, found = name.split("_"), []
     for other in view.workspace.packages:
         pairs = [pair for pair in zip(words, other.split("_"), strict=False) if pair[0] != pair[1]]
-        if len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1:
-            if posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
-                found.append(other)
+        alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
+        if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
+            found.append(other)
     return found[0] if len(found) == 1 else ""
 
 
