@@ -23,6 +23,7 @@ class TargetDraft:
         "name",
         "output_name",
         "public_standard",
+        "signatures",
         "sources",
         "standard",
     )
@@ -43,6 +44,8 @@ class TargetDraft:
         self.public_standard = 0
         self.installed_includes: dict[str, None] = {}
         self.excluded = self.added = self.archive = False
+        # Of target_link_libraries(): True with keywords, False without, each with the conditions of its first call.
+        self.signatures: dict[bool, tuple[Condition, ...]] = {}
         self.installed_as = kind  # the artifact: executable, library, static or module
 
     def finish(self) -> BuildTarget:

@@ -88,6 +88,9 @@ _NEEDS_VALUES = frozenset(
     {"install", "add_subdirectory", "add_library", "add_executable", "target_link_libraries", "target_sources"}
 )
 
+# Commands of which a version of CMake has more forms than the one before.
+_GROWN = frozenset(name.partition("(")[0] for name in SINCE if "(" in name)
+
 # What the setup files of ros_environment set, where it is installed.
 _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
@@ -318,6 +321,9 @@ class Interpreter:
         self.spend(1)
         name = self.command = call.name
         self.use_feature(name, call.at)
+        if name in _GROWN:
+            for template in call.templates if name == "project" else call.templates[:1]:
+                self.use_feature(f"{name}({template.raw})", call.at)
         handler = HANDLERS.get(name)
         if handler is not None:
             if name not in BUILTIN_COMMANDS:

@@ -164,7 +164,24 @@ def target_link_libraries(run: Interpreter, call: CommandCall, args: list[Word])
     """target_link_libraries(), old and new keywords."""
     if args:
         items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
-        add_links(run, known(run, args[0]), items, "link")
+        draft = known(run, args[0])
+        note_signature(run, draft, args)
+        add_links(run, draft, items, "link")
+
+
+def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> None:
+    """Remembers which signature of target_link_libraries() a call has, and refuses what has both (CMP0023). A variable
+    that is not known may hold a keyword."""
+    if len(args) < 2 or run.silent or run.minimum_policy < (2, 8, 12) or not args[0].sure:
+        return
+    keyword = args[1] in ("PUBLIC", "PRIVATE", "INTERFACE")
+    if not keyword and (not args[1].sure or "$" in args[1]) and not re.fullmatch(r"\$\{\w+_LIBRARIES\}", args[1]):
+        return
+    other = draft.signatures.get(not keyword)
+    opposite = {(held.text, not held.negated) for held in other or ()}
+    if other is not None and not any((held.text, held.negated) in opposite for held in run.under(args[0])):
+        run.refuse("mixed", args[0], other)
+    draft.signatures.setdefault(keyword, run.under(args[0]))
 
 
 @handles("target_include_directories")
