@@ -34,7 +34,7 @@ from ..rule import Diagnostic, Doubt, Text, rule
 _BLOCKS = ("if", "foreach", "while", "function", "macro", "block")
 _UNCLOSED = re.compile(r"(\w+)\(\) is never closed")
 # What CMake's parser stops at elsewhere, such as the marks of a merge (cmListFileCache.cxx).
-_STRAY = re.compile(r"`(.+)` (?:is no command(?:: no parenthesis follows)?|(?:where a command was|follows a command).*)")
+_STRAY = re.compile(r"`(.+)` (?:is no command(?:: no parenthesis.*)?|(?:where a command was|follows a command).*)")
 _ENDS = ("is never closed", *(f"without {block}()" for block in _BLOCKS))
 
 

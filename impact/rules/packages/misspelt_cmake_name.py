@@ -38,6 +38,7 @@ _PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
 # Letters of a library's name: shorter ones are alike by chance.
 _SHORTEST = 6
 
+
 @rule(
     texts={
         "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
@@ -73,7 +74,6 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
             fix = (Replace(at.path, at.line, at.column, name, meant),)
             yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
-
 
     yield from _list_libraries(view, package)
 
