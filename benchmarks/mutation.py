@@ -169,7 +169,7 @@ def draw_mutants(root: Path, folders: Iterable[str], number: int, seed: int) -> 
 
 # Which tests execute a place
 
-_RECORD = """
+_RECORD = '''
 def _record_(*numbers, _seen=["", set()]):
     import os
     test = os.environ.get("PYTEST_CURRENT_TEST", "")
@@ -183,7 +183,7 @@ def _record_(*numbers, _seen=["", set()]):
             os.close(file)
         except OSError:
             pass
-"""
+'''
 
 
 def find_statement(module: ast.Module, place: Place) -> ast.stmt | None:

@@ -116,7 +116,9 @@ def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded])
     _keep(store, key, diagnostics, {})
 
 
-def _keep(store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]) -> None:
+def _keep(
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
+) -> None:
     stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
 

@@ -193,7 +193,9 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
         from ..report import text
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
-        style = PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
+        style = (
+            PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
+        )
         return text.render(report, style)
     if format == "github":
         from ..report import github

@@ -76,6 +76,12 @@ class UnknownContents:
         made = self._made_apart(package)
         return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
 
+    @property
+    def has_more_packages(self) -> bool:
+        """Whether packages may lie beside those of the workspace: in underlays, in repositories that files name which
+        people put the sources together from, or in submodules that are not checked out."""
+        return self._view.underlaid or self._view.workspace.outside.lists_repositories
+
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
         (Gazebo and its metapackages come from their own): they may bring any system library."""

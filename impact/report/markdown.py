@@ -10,8 +10,6 @@ from .markdown_text import _LONGEST, code, escaped
 
 _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
-
-
 def render(report: Report) -> str:
     """Markdown of at most ten lines: the verdict by target, the worst findings, what they rest on."""
     findings = fresh(report)
@@ -90,3 +88,5 @@ def _tail(report: Report, findings: list[Finding]) -> str:
     parts += [f"{len(report.known):,} in the baseline"] if report.known else []
     parts.append(f"rosimpact {escaped(report.version)}, data of {escaped(report.data)}")
     return " · ".join(parts)
+
+

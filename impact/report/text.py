@@ -19,8 +19,6 @@ from . import evidence
 from .style import PLAIN, Style, painted
 
 _TAB = "    "
-
-
 def render(report: Report, style: Style = PLAIN) -> str:
     """The report as text that ends in a line end."""
     lines = _targets(report, style)

@@ -138,7 +138,8 @@ def _declared(evidence: Evidence, ros: int) -> Evidence:
     """The evidence with the declarations before and since."""
     history = surfaces().history(evidence.package, ros)
     old, new = (
-        declarations(history, evidence.side, evidence.name, version) for version in (evidence.last, evidence.first)
+        declarations(history, evidence.side, evidence.name, version)
+        for version in (evidence.last, evidence.first)
     )
     # What only changed beneath, such as a base, is declared as before.
     return evidence._replace(old=old, new=new) if old != new else evidence

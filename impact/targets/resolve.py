@@ -395,7 +395,9 @@ def choose_targets(
     return tuple(Chosen(target.surrounded(*surroundings(config, target.distro)), reason) for target, reason in chosen)
 
 
-def _chosen(asked: Sequence[str], config: Config, ros: int, tree: Tree, data: Snapshot | None) -> tuple[Chosen, ...]:
+def _chosen(
+    asked: Sequence[str], config: Config, ros: int, tree: Tree, data: Snapshot | None
+) -> tuple[Chosen, ...]:
     if asked:
         return tuple(Chosen(parse_target(text, config, data=data), "asked for") for text in dict.fromkeys(asked))
     if config.default_targets:

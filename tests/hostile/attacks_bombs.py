@@ -67,8 +67,6 @@ XML_PLACES = {
     "src/bad/plugins.xml": "<library path='BOMB'><class type='BOMB' base_class_type='x'/></library>",
 }
 NL = "\n"
-
-
 def make_files() -> list[tuple[str, dict[str, str | bytes]]]:
     """The files of each row; 140 MB, which are not kept."""
     return [
@@ -620,7 +618,6 @@ def make_files() -> list[tuple[str, dict[str, str | bytes]]]:
         file_row("dashes in an srv", "src/bad/srv/Bad.srv", "---\n" * 200_000),
         file_row("hashes in a parameter file", "src/bad/config/a.yaml", "#" * 3_000_000),
     ]
-
 
 DEAR = ("700 MB", "inflates", "100,000 files", "10,000 empty", "2,000 packages", "C++: 60 MB", "manifest of 100 MB")
 FLOW = (

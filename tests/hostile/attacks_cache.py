@@ -58,7 +58,7 @@ def rewritten(name: str, change: Callable[[object], object], only: str = "") -> 
                     continue
                 # Large values in tens of thousands of rows would fill the disk.
                 large = len(_as_bytes(change(b"x"))) > 9_999
-                some = f' where rowid in (select rowid from "{table}" limit 20)' if large else ""
+                some = f" where rowid in (select rowid from \"{table}\" limit 20)" if large else ""
                 try:
                     connection.execute(f'update "{table}" set "{column}" = changed("{column}"){some}')
                 except sqlite3.Error:

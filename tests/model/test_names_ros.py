@@ -124,6 +124,8 @@ def test_remapping_of_ros2(name, rules, kind, expected):
     assert ros2_remapped(name, "n", "/r", parsed, kind) == expected
 
 
+
+
 def test_small_ones():
     assert [canonical(n) for n in ("", "/", "//", "a//b/", "/a/")] == ["", "/", "/", "a/b", "/a"]
     assert [namespace_of(n) for n in ("/a/b", "/a", "/")] == ["/a", "/", "/"]

@@ -157,7 +157,7 @@ def test_nodes_and_their_names():
     ],
 )
 def test_files_worth_reading(data, expected):
-    assert mentions_changing(set(words_of(data).split(" ")), CHANGING) is expected
+    assert mentions_changing(set(words_of(data).split(' ')), CHANGING) is expected
 
 
 @pytest.mark.parametrize(

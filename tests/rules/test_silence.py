@@ -191,6 +191,21 @@ SILENT = {
         ),
         ("package.xml", "<depend>ros1_bridge</depend>", ""),
     ),
+    "a header for ROS 2 of a package that is made for both": Silent(
+        "unknown-header",
+        ("noetic",),
+        catkin(
+            "roscpp sensor_msgs",
+            "catkin_package()\ninclude_directories(${catkin_INCLUDE_DIRS})\n"
+            "add_executable(pull pull.cpp)\ntarget_link_libraries(pull ${catkin_LIBRARIES})\n"
+            "if(SLED_OF_ROS2)\nadd_executable(push push.cpp)\nendif()\n",
+            "roscpp",
+            "sensor_msgs",
+            pull_cpp="#include <ros/ros.h>\n#include <sensor_msgs/Imu.h>\nint main() { return 0; }\n",
+            push_cpp="#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() { return 0; }\n",
+        ),
+        ("push.cpp", "#include <rclcpp/rclcpp.hpp>\n", ""),
+    ),
     "a relative import that is called like what another package had": Silent(
         "removed-symbol",
         ("humble",),
@@ -987,7 +1002,7 @@ SILENT = {
             "find_package(Boost REQUIRED COMPONENTS program_options)\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run Boost::program_options)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/program_options.hpp>\n" + MAIN,
+            run_cpp="#include <boost/program_options.hpp>\nboost::program_options::variables_map given;\n" + MAIN,
         ),
         ("CMakeLists.txt", "target_link_libraries(run Boost::program_options)\n", ""),
     ),
@@ -999,7 +1014,7 @@ SILENT = {
             "target_link_libraries(sled PUBLIC ${Boost_LIBRARIES})\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run PRIVATE sled)\ninstall(TARGETS sled DESTINATION lib)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/filesystem.hpp>\n" + MAIN,
+            run_cpp="#include <boost/filesystem.hpp>\nboost::filesystem::path place;\n" + MAIN,
             sled_cpp="int sled() { return 0; }\n",
         ),
         ("CMakeLists.txt", "target_link_libraries(run PRIVATE sled)", ""),
@@ -1053,8 +1068,7 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
-            + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",

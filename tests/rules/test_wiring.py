@@ -79,7 +79,7 @@ TEAM["team/package.xml"] = TEAM["team/package.xml"].replace("<export>", "<export
 BUNDLE = ament("kit", "", "exec_depend:ament_cmake_cpplint")
 VENDOR = (
     "include(ExternalProject)\nExternalProject_Add(ice GIT_REPOSITORY https://example.org/ice.git\n"
-    '  PATCH_COMMAND patch -p1 UPDATE_COMMAND "")\n'
+    "  PATCH_COMMAND patch -p1 UPDATE_COMMAND \"\")\n"
 )
 NODE = {"sled/sled/__init__.py": "", "sled/sled/node.py": "import yaml\n"}
 MODULE = "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(sled)\n"
@@ -287,9 +287,9 @@ ROWS = {
     "a package of a repository": Row(
         "unresolvable-key",
         "noetic",
-        catkin("sled", "", "catkin_package()", "exec_depend:swri_console"),
-        ("sled/package.xml", "swri_console", "swri"),
-        ("error", "swri"),
+        catkin("sled", "", "catkin_package()", "exec_depend:husky_msgs"),
+        ("sled/package.xml", "husky_msgs", "husky"),
+        ("error", "husky"),
     ),
     "a script installed as a program": Row(
         "missing-install",

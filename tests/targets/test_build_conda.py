@@ -14,10 +14,8 @@ from rosimpact.databuild.git import BuildError
         ("boost:\n  - 1.74\n", {"boost": "1.74"}),
         ("boost:  # [unix]\n- '1.74.*'   # [linux]\n- 1.70  # [osx]\n", {"boost": "1.74.*"}),
         ("fmt:  # [win]\n  - 9\npcl: 1.13\n", {"pcl": "1.13"}),
-        (
-            "gcc:\n  - 15  # [linux]\n  - 14  # [linux and (x86_64 or aarch64) and os.environ.get('C', '') == 'T']\n",
-            {"gcc": "15"},
-        ),
+        ("gcc:\n  - 15  # [linux]\n  - 14  # [linux and (x86_64 or aarch64) and os.environ.get('C', '') == 'T']\n",
+         {"gcc": "15"}),
         ("python:\n  - 3.11\n  - 3.12\n", {}),
         ("a:\n  - 1  # [not emscripten]\n  - 2  # [emscripten]\nb:\n  - 3  # [linux; no]\n", {"a": "1"}),
         ("# a comment\npin_run_as_build:\n  boost:\n    max_pin: x.x\nzlib:\n\n  - 1.2\n", {"zlib": "1.2"}),

@@ -31,7 +31,9 @@ EVERYTHING = ("humble",), tuple(PACKAGES)
 
 # Children of a process that has imported all they need: a tenth of the time that starting them anew takes.
 PROCESSES = multiprocessing.get_context("forkserver")
-PROCESSES.set_forkserver_preload(["distributed", "rosimpact.databuild.cluster", "rosimpact.databuild.surface.package"])
+PROCESSES.set_forkserver_preload(
+    ["distributed", "rosimpact.databuild.cluster", "rosimpact.databuild.surface.package"]
+)
 
 
 class Cluster:

@@ -10,7 +10,11 @@ from rosimpact.impact.targets.changes import DISTROS, all_uses
 from rosimpact.impact.targets.snapshot import DATA
 
 BOUND = re.compile(r"\d+(\.\d+)+\Z")
-OURS = {label for group in json.loads((DATA / "uses_ros.json").read_bytes())["uses"] for label in group["uses"]}
+OURS = {
+    label
+    for group in json.loads((DATA / "uses_ros.json").read_bytes())["uses"]
+    for label in group["uses"]
+}
 ROWS = {label: row for label, row in all_uses().items() if label in OURS}
 
 # label: code that looks so, and code that does not. A label without an example is code itself.

@@ -416,7 +416,9 @@ def _parts(kind: str, is_str: bool = False) -> Maker:
 
 def _piece(kind: str, *names: str, is_str: bool = False) -> Maker:
     """A substitution of arguments by their places and names."""
-    return lambda call: call.piece(kind, *(call.get(place, name) for place, name in enumerate(names)), is_str=is_str)
+    return lambda call: call.piece(
+        kind, *(call.get(place, name) for place, name in enumerate(names)), is_str=is_str
+    )
 
 
 def _path_join(call: LaunchCall) -> Any:

@@ -131,6 +131,7 @@ class Expressions(SourceText):
             return printable(node.value)
         return self.source(node)
 
+
     # Visiting, for calls and uses alone
 
     def visit(self, node) -> None:

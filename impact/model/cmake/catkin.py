@@ -186,11 +186,7 @@ def catkin_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> N
 
 
 @handles(
-    "add_rostest",
-    "catkin_add_nosetests",
-    "rosbuild_add_rostest",
-    "rosbuild_add_pyunit",
-    "roslaunch_add_file_check",
+    "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check",
     least=1,
 )
 def catkin_add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:

@@ -12,6 +12,7 @@ from .interpreter import Interpreter
 _FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)
 
 
+
 def _no_extras(package: str) -> tuple[str, ...]:
     return ()
 

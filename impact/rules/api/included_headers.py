@@ -42,8 +42,10 @@ class IncludedHeaders:
 
     def list_asked(self, package: Package) -> Iterator[tuple[IncludeUse, tuple[Doubt, ...]]]:
         """The includes of a package that the target compiles, with what speaks against an error there. Those of headers
-        that the workspace provides are left out, and those that rules of their own report."""
+        that the workspace provides are left out, and those that rules of their own report; of a package that is made
+        for both generations of ROS also those of files for the other one, unless they are surely compiled here."""
         view = self._view
+        foreign = _list_files_of_other_generation(view, package)
         for include in package.digest.includes:
             path = include.path
             if path in self._quiet or not view.active(include.conditions):
@@ -54,8 +56,16 @@ class IncludedHeaders:
                 self._quiet.add(path)
                 continue
             if versioned_folder(view.target, path) is None:
-                doubts = doubts_of_place(view, include.role, include.conditions)
-                yield include, doubts if include.targets else (*doubts, Doubt.UNCOMPILED)
+                doubts = self._doubts_of(package, include)
+                if not doubts or include.at.path not in foreign:
+                    yield include, doubts
+
+    def _doubts_of(self, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+        doubts = doubts_of_place(self._view, include.role, include.conditions)
+        if not include.targets:
+            return (*doubts, Doubt.UNCOMPILED)
+        compiling = (target for target in package.build.targets if target.name in include.targets)
+        return doubts if any(self._view.certain(t.conditions) for t in compiling) else (*doubts, Doubt.CONDITIONAL)
 
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
@@ -98,6 +108,20 @@ class IncludedHeaders:
         if change is None or view.has_released_header(path.partition("/")[0], path):
             return None  # the package that it is called after has it
         return change if view.has_released_header(change.package, path) is False else None
+
+
+# What the C++ files of a generation of ROS include.
+_CLIENT_LIBRARIES = {1: "ros/", 2: "rclcpp/"}
+
+
+def _list_files_of_other_generation(view: TargetView, package: Package) -> frozenset[str]:
+    """The C++ files of a package for both generations that are for the one which the target is not of."""
+    own, other = (_CLIENT_LIBRARIES[ros] for ros in (view.target.ros, 3 - view.target.ros))
+    including = {
+        client: frozenset(i.at.path for i in package.digest.includes if i.path.startswith(client))
+        for client in (own, other)
+    }
+    return including[other] - including[own] if including[own] else frozenset()
 
 
 @kept_with

@@ -4,9 +4,9 @@ What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
     imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
     name, or from a package of an unknown name in place of its own; imports of modules that setup() does not install;
-    modules of a package that import another one of its folder by its bare name; functions of entry points that their module does not define; star imports of a package from
-    itself, which Python 2 took from a module in it; and builtins (`raw_input`,
-    `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
+    modules of a package that import another one of its folder by its bare name; functions of entry points that their
+    module does not define; star imports of a package from itself, which Python 2 took from a module in it; and builtins
+    (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
 
 Why it breaks
     Python raises a NameError, ImportError or AttributeError when it reaches the line.

@@ -1,8 +1,8 @@
 """catkin-package-order: a target is added before catkin_package() is called, or it is never called.
 
 What it does
-    Reports libraries and programs that CMake adds before it comes to catkin_package(), and packages that find catkin and
-    do not call it at all.
+    Reports libraries and programs that CMake adds before it comes to catkin_package(), and packages that find catkin
+    and do not call it at all.
 
 Why it breaks
     catkin_package() sets where targets are built and what they export: those that were added before it land in the

@@ -39,7 +39,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
 )
 def unreleased_package(view: TargetView):
     target = view.target
-    beside = view.underlaid or view.workspace.outside.lists_repositories
+    beside = view.unknown_contents.has_more_packages
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:
         seen = set()

@@ -108,6 +108,8 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
+        elif view.unknown_contents.has_more_packages and not _KEY.fullmatch(name) and name not in BUILD_TOOLS:
+            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
         elif relative := _find_namesake(view, package, name) or _find_reworded(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
@@ -166,21 +168,23 @@ def _find_reworded(view: TargetView, name: str) -> str:
     words, found = name.split("_"), []
     for other in view.workspace.packages:
         pairs = [pair for pair in zip(words, other.split("_"), strict=False) if pair[0] != pair[1]]
-        if len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1:
-            if posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
-                found.append(other)
+        alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
+        if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
+            found.append(other)
     return found[0] if len(found) == 1 else ""
 
 
 def _parts_of(view: TargetView, name: str) -> list[str]:
-    """Released packages that are called after a name, two at least, of the repository of that name."""
+    """Released packages that are called after a name, two at least, where all are of one repository, or its name is
+    that."""
     if len(name) < 4:
         return []
     names, start = _in_order(view.target.released_names()), name + "_"
     first = bisect_left(names, start)
     # `_` is followed by a backquote.
-    alike = names[first : bisect_left(names, name + "`", first)]
-    found = [n for n in alike if view.available(n) and _plain_repository(view, n) == name]
+    alike = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    homes = {n: _plain_repository(view, n) for n in alike}
+    found = [n for n in alike if homes[n] == name] if len(set(homes.values())) > 1 else alike
     return found if len(found) > 1 else []
 
 

@@ -240,7 +240,9 @@ class SurfaceHistory:
             found.setdefault(scope, []).append(value)
         return found
 
-    def _values(self, kind: str, version: str, type_: Any = Any, of: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
+    def _values(
+        self, kind: str, version: str, type_: Any = Any, of: tuple[str, ...] = ()
+    ) -> Iterator[tuple[str, Any]]:
         """Scope and value of each row of a kind that a version has. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
         decode = msgspec.msgpack.Decoder(type_).decode
@@ -432,3 +434,5 @@ def shipped() -> Surfaces:
         return Surfaces(DATA / "surfaces.sqlite")
     except StoredSurfacesError as error:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+
+

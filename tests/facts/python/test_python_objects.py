@@ -41,10 +41,8 @@ def told(source: str) -> set[tuple[str, str]]:
         ("from a import C\ndef f(x=None):\n  x = x or 1\n  if not x: x = C()\n  x.m(1)", {("a.C", "call")}),
         ("from a import C\ndef f(x=None):\n  if not x: x = C()\n  x.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
         ("from a import C\ntry:\n  x = C()\nexcept E:\n  x.m(1)", {("a.C", "call")}),
-        (
-            "from a import C\nclass D:\n  def f(self):\n    self.x = C()\n    a, self.x = y\n    self.x.m()",
-            {("a.C", "call")},
-        ),
+        ("from a import C\nclass D:\n  def f(self):\n    self.x = C()\n    a, self.x = y\n    self.x.m()",
+         {("a.C", "call")}),
         # nor when it is imported under a condition
         ("try:\n  from a import C\nexcept ImportError:\n  C = None\nx = C()\nx.m(1)", set()),
         # annotations
