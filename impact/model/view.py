@@ -20,6 +20,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, ChangeRow
+from ..targets.distro.distro import DistroTarget
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
@@ -29,7 +30,7 @@ from ..targets.providers.library import default_standard, include_roots, standar
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
-from ..targets.target import ChangeInForce, Provider, Target
+from ..targets.target import ChangeInForce, Provider
 from ..targets.version import at_least
 from .cmake.build import At, FoundPackage, for_tests
 from .misspelling import SpellingIndex
@@ -101,7 +102,7 @@ class TargetView:
     def __init__(
         self,
         workspace: Workspace,
-        target: Target,
+        target: DistroTarget,
         providers,
         config: Config = _UNCONFIGURED,
         asked: frozenset[str] = frozenset(),
@@ -160,13 +161,13 @@ class TargetView:
             gone=lambda kind, name: self._is_gone(kind, name, target),
         )
 
-    def _has_package(self, name: str, target: Target) -> bool | None:
+    def _has_package(self, name: str, target: DistroTarget) -> bool | None:
         """Whether a package is there, on a target or in the workspace; None for names that no package ever had."""
         if name in self.workspace.packages or target.version(name) is not None:
             return True
         return False if target.ever_released(name) else None
 
-    def _is_gone(self, kind: str, name: str, target: Target) -> bool:
+    def _is_gone(self, kind: str, name: str, target: DistroTarget) -> bool:
         """Whether known changes tell that a target has a package, or a command of CMake, no longer."""
         kinds = ("cmake-removed", "cmake-renamed") if kind == "command" else ("package-removed", "package-renamed")
         if kind == "package" and (self._has_package(name, target) or target.resolve(name) is not None):
@@ -277,7 +278,7 @@ class TargetView:
         return frozenset(found)
 
     @cached_property
-    def newest(self) -> Target | None:
+    def newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation; None when this target is it or newer, or when it is asked for
         itself, so that its own view tells of it."""
         newest = self.target.newest()
@@ -560,7 +561,7 @@ class TargetView:
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
 
     @cached_method
-    def _environment_on(self, target: Target) -> Environment:
+    def _environment_on(self, target: DistroTarget) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
 

@@ -7,7 +7,7 @@ from ..facts.condition import Condition
 from ..model.package import ImportUse, SyntaxUse
 from ..model.view import TargetView
 from ..model.workspace import Package
-from ..targets.target import Target
+from ..targets.distro.distro import DistroTarget
 from .rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
 
 
@@ -24,7 +24,9 @@ class Refused(NamedTuple):
     conditions: tuple[Condition, ...] = ()
 
 
-def report_refused(view: TargetView, find: Callable[[Package, Target], Iterable[Refused]]) -> Iterator[Diagnostic]:
+def report_refused(
+    view: TargetView, find: Callable[[Package, DistroTarget], Iterable[Refused]]
+) -> Iterator[Diagnostic]:
     """Diagnostics on what the Python of a view's target does not accept. find: gives it, for a package and a target
     with Python 3. Their data has `version`, that of Python, and `horizon`, which is empty for the target itself."""
     target, ahead = view.target, None

@@ -35,7 +35,7 @@ from ...model.package import ImportUse
 from ...model.python.undefined import BESIDE, UNLISTED
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ...targets.target import Target
+from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
 from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
 
@@ -88,7 +88,7 @@ def undefined_name(view: TargetView):
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
-    def find(package: Package, target: Target) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
                 yield Refused(use, name.lstrip("."), "python 2", doubts=_doubts_of(use), conditions=use.conditions)

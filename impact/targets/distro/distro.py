@@ -23,7 +23,7 @@ from ....edges.reach import walk
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
-from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
+from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
 from ..version import number_of
 from .conda import CHANNELS, libraries_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
@@ -87,16 +87,17 @@ def _read_released(data: Snapshot, distro: int, cut: int) -> Mapping[str, _Relea
     return found
 
 
-class DistroTarget(Target):
-    """A distro at a date, with overrides.
+class DistroTarget:
+    """A target: what another developer or a robot has. A distro at a date, with overrides.
 
     distro: its name. date: ISO day, None for the newest day of the data. platform: `ubuntu jammy`, None for the
     distro's main one at that date. versions: versions that differ on this machine, by ROS package or platform library;
     an empty text means "not installed". name: what to call the target, by default as it was asked for. rules: rosdep
     rules of one's own by key, as in a rosdep file; they go over the public ones.
 
-    Raises TargetError for an unknown distro or a malformed date. Further attributes: end_of_life (ISO day, empty when
-    none is set), lts, python_major, data_date.
+    Raises TargetError for an unknown distro or a malformed date. Further attributes: ros (1 or 2), python_major (2 or
+    3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the first release),
+    approximate (True before the first sync tag), end_of_life (ISO day, empty when none is set), lts.
     """
 
     def __init__(
@@ -139,6 +140,7 @@ class DistroTarget(Target):
         return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
 
     def identity(self) -> str:
+        """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
         return repr((self._asked, *known, snapshots.data_stamp()))
 
@@ -216,6 +218,7 @@ class DistroTarget(Target):
 
     @cached_method
     def version(self, package: str) -> str | None:
+        """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
@@ -238,6 +241,7 @@ class DistroTarget(Target):
         return self._data.names("library")
 
     def ever_released(self, package: str) -> bool:
+        """True when any distro at any date has released a package of this name."""
         return package in self._data.names("package")
 
     def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
@@ -313,7 +317,7 @@ class DistroTarget(Target):
         return (row[0], row[1] or "", row[2] or "") if row else None
 
     @cached_property
-    def knows_manifests(self) -> bool:  # type: ignore[override]
+    def knows_manifests(self) -> bool:
         row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
         return row is not None
 
@@ -491,6 +495,7 @@ class DistroTarget(Target):
 
     @cached_method
     def resolve(self, key: str) -> Resolution | None:
+        """The rosdep rule for a key on this platform, None when there is none."""
         os_name, release = split_platform(self.platform)
         found = self._resolve(key, os_name, release, self._rule_ts)
         if found is None and self.end_of_life and self.end_of_life < self.date:
@@ -513,12 +518,15 @@ class DistroTarget(Target):
         return None
 
     def known_key(self, key: str) -> bool:
+        """True when rosdep has, or had, a key of this name for any platform."""
         return key in self._rules or key in self._data.names("rule", "key")
 
     def has_rosdep_rules(self) -> bool:
+        """True when rosdep knows the platform's operating system, so that a key without a rule cannot be installed."""
         return split_platform(self.platform)[0] in systems_of_rosdep(self._data) or bool(self._rules)
 
     def keys_instead(self, key: str) -> tuple[str, ...]:
+        """rosdep keys that install here what a key installs on other releases, best first."""
         asked = "SELECT rule FROM rule WHERE key = ? AND os IN ('debian', 'ubuntu') ORDER BY ts DESC"
         rules = [decode_rule(rule) for (rule,) in self._data.rows(asked, (key,))]
         packages = dict.fromkeys(name for rule in rules for name in texts_of(rule))
@@ -587,13 +595,14 @@ class DistroTarget(Target):
         }
 
     @property
-    def python(self) -> int:  # type: ignore[override]
+    def python(self) -> int:
         """Minor version of the Python 3 that ROS code runs on; 0 on Python 2 (python_major 2) and where not known."""
         if self.python_major == 2:
             return 0
         return python_minor(self.library("python")) or 0
 
     def library(self, name: str) -> str | None:
+        """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
         wanted = library_name(name)
         if wanted in self._own_libraries:
             return self._own_libraries[wanted] or None
@@ -639,6 +648,7 @@ class DistroTarget(Target):
                 del _tables[next(iter(_tables))]
 
     def availability(self, symbol: Symbol) -> Availability:
+        """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
         return self._availabilities.on_horizon(symbol)
 
     @cached_property
@@ -648,6 +658,7 @@ class DistroTarget(Target):
         return Availabilities(self)
 
     def changes(self) -> ChangeTable:
+        """Known upstream changes that are in force here, deprecations included."""
         if not self.has_changes():
             from ..changes import changes_in_force
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 
 from ...facts import elf
 from ...facts.elf import AskedSymbolVersions, Elf, stem_and_version
-from ..target import Target
+from ..distro.distro import DistroTarget
 from ..version import compare
 from .loader import Loader
 from .sonames import Sonames
@@ -131,7 +131,11 @@ class DescribedShelf:
     machine, gone = "", False
 
     def __init__(
-        self, target: Target, sonames: Sonames, own: Container[str] = frozenset(), near: Container[str] = frozenset()
+        self,
+        target: DistroTarget,
+        sonames: Sonames,
+        own: Container[str] = frozenset(),
+        near: Container[str] = frozenset(),
     ):
         """own: libraries of underlays that go with the workspace. near: libraries of prefixes on this machine, which
         tell that ROS packages bring them, and not in which version they are elsewhere."""
