@@ -34,7 +34,7 @@ from ..rule import Diagnostic, Doubt, Text, rule
 _BLOCKS = ("if", "foreach", "while", "function", "macro", "block")
 _UNCLOSED = re.compile(r"(\w+)\(\) is never closed")
 # What CMake's parser stops at elsewhere, such as the marks of a merge (cmListFileCache.cxx).
-_STRAY = re.compile(r"`(.+)` (?:is no command(?:: no parenthesis follows)?|(?:where a command was|follows a command).*)")
+_STRAY = re.compile(r"`.+` (?:is no command(?:: no parenthesis.*)?|(?:where a command was|follows a command).*)")
 _ENDS = ("is never closed", *(f"without {block}()" for block in _BLOCKS))
 
 
@@ -58,10 +58,10 @@ def unmatched_cmake_block(workspace: Workspace):
                 yield Diagnostic(at, at.path.rpartition("/")[2], package.name, data, "block", (Doubt.INCOMPLETE,))
         for path, line, message in package.digest.problems:
             if path in package.build.files and path.endswith("CMakeLists.txt"):
-                unclosed, stray = _UNCLOSED.fullmatch(message), _STRAY.fullmatch(message)
-                if unclosed:
+                if unclosed := _UNCLOSED.fullmatch(message):
                     yield Diagnostic(At(path, line), unclosed[1], package.name, {}, "command")
                     break
-                if stray:
-                    yield Diagnostic(At(path, line), stray[1], package.name, {"problem": message}, "stray")
+                if _STRAY.fullmatch(message):
+                    subject = path.rpartition("/")[2]
+                    yield Diagnostic(At(path, line), subject, package.name, {"problem": message}, "stray")
                     break

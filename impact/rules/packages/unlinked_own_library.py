@@ -17,8 +17,9 @@ Use instead
     target_link_libraries(wave arm)
 
 Not reported
-    Static libraries; sources that nothing compiles, where the target links libraries that are not known; libraries that other targets of the package always link together with the defining one; targets
-    that link something whose value is unknown; functions that another class may have.
+    Static libraries; sources that nothing compiles, where the target links libraries that are not known; libraries that
+    other targets of the package always link together with the defining one; targets that link something whose value is
+    unknown; functions that another class may have.
 """
 
 from collections.abc import Collection
