@@ -1186,3 +1186,13 @@ def test_a_submodule_that_is_not_checked_out_has_the_package_that_it_is_called_a
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "removed-header"] == expected
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/audio", []), ("external/vision", ["warning"])])
+def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_it(folder, expected, tmp_path):
+    files = ament("", "exec_depend:audio_capture")
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected

@@ -73,6 +73,8 @@ def unresolvable_key(view: TargetView, package: Package):
         seen.add(name)
         if target.ever_released(name) or view.private(name):
             continue  # unreleased-package says it
+        if view.unknown_contents.is_of_submodule(name):
+            continue
         at = view.manifest_place(package, dependency)
         if target.known_key(name):
             if not target.has_rosdep_rules():
@@ -85,8 +87,6 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-        elif view.unknown_contents.has_more_packages and not _KEY.fullmatch(name) and name not in BUILD_TOOLS:
-            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
         elif relative := _find_namesake(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
