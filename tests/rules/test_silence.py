@@ -1068,7 +1068,8 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
+            + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",
@@ -1170,3 +1171,28 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
     assert found == [(severity, module)]
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/cv_bridge", []), ("external/vision", ["error"])])
+def test_a_submodule_that_is_not_checked_out_has_the_package_that_it_is_called_after(folder, expected, tmp_path):
+    files = ament(
+        "find_package(cv_bridge REQUIRED)\nadd_executable(look look.cpp)\n"
+        "target_link_libraries(look cv_bridge::cv_bridge)",
+        "cv_bridge",
+        look_cpp="#include <cv_bridge/cv_bridge.h>\nint main() { return 0; }\n",
+    )
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "removed-header"] == expected
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/audio", []), ("external/vision", ["warning"])])
+def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_it(folder, expected, tmp_path):
+    files = ament("", "exec_depend:audio_capture")
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected

@@ -102,6 +102,8 @@ class IncludedHeaders:
         """The reviewed row on a path that the target lacks."""
         view = self._view
         change = self._gone.get(path)
+        if change is not None and change.package in view.workspace.unread_names:
+            return None
         if change is not None and not view.nested_header(change.package, path):
             return change
         change = self._early.get(path)
