@@ -45,7 +45,7 @@ def unknown_header(view: TargetView, package: Package):
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
-        own, fault = find_misspelt(view, package, path), find_interface_fault(view, path)
+        own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
         if (own is None and fault is None) or headers.find_loss(package, include) is not None:
             continue
         if own is not None:
