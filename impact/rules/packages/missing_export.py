@@ -115,7 +115,7 @@ def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name:
 
 def _comes_with_client_library(view: TargetView, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
-    return name in view.spread(("rclcpp",))
+    return name in view.spread(("rclcpp" if view.target.ros == 2 else "roscpp",))
 
 
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
@@ -152,7 +152,8 @@ def _list_of_messages(view: TargetView, package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
                 reach |= {name}
-                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,), together=_ONCE)
+                doubt = Doubt.DISPENSABLE if _comes_with_client_library(view, name) else Doubt.DISTURBS
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=(doubt,), together=_ONCE)
 
 
 def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
