@@ -1,6 +1,5 @@
 """What a change reaches, as text, JSON and Markdown."""
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
@@ -13,9 +12,9 @@ from ..analysis.downstream import KINDS, Effect, Hop, Impact
 from .columns import LinePart, laid_out
 from .graph.text import WIDE, coverage_lines
 from .markdown_text import code, escaped
+from .schemas import SCHEMA, STABLE, generated_schema
 from .style import Style, painted
 
-SCHEMA = 1
 SHOWN = 8
 """As many reached nodes as are shown of a change, the nearest ones."""
 _MOST_NODES = 3
@@ -218,14 +217,8 @@ def schema() -> str:
     (effect, node, coverage), parts = msgspec.json.schema_components(
         [Effect, Node, Coverage], ref_template="#/$defs/{name}"
     )
-    for part in parts.values():
-        part["description"] = " ".join(part.get("description", "").split())
-        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
-        part.pop("additionalProperties", None)
     string = {"type": "string"}
     properties: dict[str, Any] = {
-        "schema": {"const": SCHEMA},
-        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": string, "version": string}},
         "workspace": string,
         "rev": string,
         "base": string,
@@ -234,14 +227,5 @@ def schema() -> str:
         "silent": {"type": "integer"},
         "coverage": coverage,
     }
-    whole = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": f"rosimpact impact, schema {SCHEMA}",
-        "description": "What `rosimpact impact --format json` prints. Fields may be added without a new schema number; "
-        "none is removed, renamed or given another meaning.",
-        "type": "object",
-        "required": list(properties),
-        "properties": properties,
-        "$defs": dict(sorted(parts.items())),
-    }
-    return json.dumps(whole, indent=1) + "\n"
+    described = f"What `rosimpact impact --format json` prints. {STABLE}"
+    return generated_schema("impact", described, properties, parts, {})
