@@ -76,11 +76,10 @@ class UnknownContents:
         made = self._made_apart(package)
         return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
 
-    @property
-    def has_more_packages(self) -> bool:
-        """Whether packages may lie beside those of the workspace: in underlays, in repositories that files name which
-        people put the sources together from, or in submodules that are not checked out."""
-        return self._view.underlaid or self._view.workspace.outside.lists_repositories
+    def is_of_submodule(self, name: str) -> bool:
+        """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""
+        folders = (folder.replace("-", "_") for folder in self._view.workspace.unread_names)
+        return any(len(folder) >= _SHORTEST and name.startswith(folder) for folder in folders)
 
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them

@@ -272,7 +272,7 @@ class TargetView:
     @cached_property
     def own_modules(self) -> frozenset[str]:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
-        found = {name.removesuffix("_py") for name in self.workspace.packages} | set(self.workspace.packages)
+        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
         for package in self.workspace:
             found |= python_packages(package.digest.files)
         return frozenset(found)
@@ -441,7 +441,7 @@ class TargetView:
             p.kind == "system" for p in self.header(path)
         ):
             return Availability(symbol, "removed", target.platform, form="platform")
-        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
+        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
@@ -523,7 +523,7 @@ class TargetView:
 
     def availability(self, symbol: Symbol) -> Availability:
         """How the target stands to something outside the workspace; what the workspace brings itself is there."""
-        if any(package in self.workspace.packages for package in symbol.packages):
+        if not self.workspace.may_have.isdisjoint(symbol.packages):
             return Availability(symbol, "present")
         return self.availabilities.on_horizon(symbol)
 
@@ -582,7 +582,7 @@ class TargetView:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
-        if head in self.workspace.packages:
+        if head in self.workspace.may_have:
             return False
         if path.endswith(".py") or change.kind.startswith("python"):
             return True

@@ -1,5 +1,6 @@
 """What is known of the headers that packages include, as the rules on them ask for it."""
 
+import posixpath
 import re
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -102,6 +103,8 @@ class IncludedHeaders:
         """The reviewed row on a path that the target lacks."""
         view = self._view
         change = self._gone.get(path)
+        if change is not None and change.package in view.workspace.unread_names:
+            return None
         if change is not None and not view.nested_header(change.package, path):
             return change
         change = self._early.get(path)
@@ -136,9 +139,12 @@ _ENDING = re.compile(r"\.(?:h|hh|hpp|hxx)\Z")
 _OF_RECONFIGURE = re.compile(r"(?P<package>\w+)/\w+Config\.h\Z")
 
 
-def find_misspelt(view: TargetView, package: Package, path: str) -> str | None:
+def find_misspelt(view: TargetView, package: Package, path: str, includer: str = "") -> str | None:
     """The header of the package that an include path means: it misses it by one letter, by case or ending, or names a
-    generated one below what is no package. None where somebody has what it names."""
+    generated one below what is no package. includer: the file that a path such as `../a.h` starts at. None where
+    somebody has what it names."""
+    if path.startswith("."):
+        return _find_other_ending(package, path, includer)
     answered = any(provider.sure or provider.name != package.name for provider in view.header(path))
     if answered or len(path.rpartition("/")[2]) < _SHORTEST:
         return None
@@ -204,6 +210,19 @@ def _file_names(view: TargetView) -> frozenset[str]:
     """The names of all files of the workspace."""
     files = (path for package in view.workspace for path in package.digest.files)
     return frozenset(path.rpartition("/")[2] for path in files)
+
+
+def _find_other_ending(package: Package, path: str, includer: str) -> str | None:
+    """The path of the header that lies where a relative path leads, with another ending."""
+    place = posixpath.normpath(posixpath.join(posixpath.dirname(includer), path))
+    last = path.lstrip("./")
+    if place in package.files or any(f"/{header}".endswith(f"/{last}") for header in package.digest.files):
+        return None
+    stem = _ENDING.sub("", place)
+    for header in package.digest.headers:
+        if header != place and _ENDING.sub("", header) == stem:
+            return posixpath.join(posixpath.dirname(path), posixpath.basename(header))
+    return None
 
 
 def is_bridge(view: TargetView, package: Package) -> bool:

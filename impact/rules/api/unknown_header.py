@@ -49,7 +49,7 @@ def unknown_header(view: TargetView, package: Package):
     headers = included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
-        own, fault = find_misspelt(view, package, path), find_interface_fault(view, path)
+        own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
         if own is None and fault is None:
             if is_nowhere(view, package, include):
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)

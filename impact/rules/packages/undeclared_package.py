@@ -40,8 +40,8 @@ from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 _FEW = {1: 1, 2: 5}
-"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who runs
-ROS 1 has most of it at hand, and its manifests were rarely complete."""
+"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
+runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
 
 
 @rule(
@@ -61,7 +61,7 @@ def undeclared_package(view: TargetView, package: Package):
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
         # Launch files and modules are used one by one, and whoever declares the first looks for the others.
-        cause = "import" if first.how == "import" else "started"
+        cause = "import" if first.how == "import" and view.target.ros > 1 else "started"
         at_run_time = () if first.how in (*ASKED, "include") else (Together(cause, few=_FEW[view.target.ros]),)
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:

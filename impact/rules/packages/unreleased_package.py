@@ -39,7 +39,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
 )
 def unreleased_package(view: TargetView):
     target = view.target
-    beside = view.unknown_contents.has_more_packages
+    beside = view.underlaid or view.workspace.outside.lists_repositories
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:
         seen = set()
@@ -50,6 +50,8 @@ def unreleased_package(view: TargetView):
             if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
                 continue
             if not target.ever_released(name) or view.private(name) or view.successor(name):
+                continue
+            if view.unknown_contents.is_of_submodule(name):
                 continue
             if dependency.condition and not view.active_manifest(dependency.condition):
                 continue

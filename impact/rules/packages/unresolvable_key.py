@@ -89,7 +89,7 @@ def unresolvable_key(view: TargetView, package: Package):
         if dependency.condition and not view.active_manifest(dependency.condition):
             continue
         seen.add(name)
-        if view.private(name):
+        if view.private(name) or view.unknown_contents.is_of_submodule(name):
             continue
         at = view.manifest_place(package, dependency)
         resolution = target.resolve(name)
@@ -108,8 +108,6 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-        elif view.unknown_contents.has_more_packages and not _KEY.fullmatch(name) and name not in BUILD_TOOLS:
-            yield Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
         elif relative := _find_namesake(view, package, name) or _find_reworded(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
