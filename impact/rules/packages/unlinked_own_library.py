@@ -27,7 +27,7 @@ from collections.abc import Collection
 from ...model.cmake.links import linked_items
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 
 
@@ -85,7 +85,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             doubts = (Doubt.INCOMPLETE, not tested or view.target.ros == 2 or Doubt.TEST)
             subject = libraries[0] if libraries else other[len(package.path) :].lstrip("/")
             kind = "library" if libraries else "source"
-            yield Diagnostic(target.at, subject, package.name, data, kind, doubts)
+            yield Diagnostic(target.at, subject, package.name, data, kind, doubts, together=(Together(other),))
             break
 
 
