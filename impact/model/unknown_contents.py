@@ -45,13 +45,14 @@ class UnknownContents:
         return (
             self.may_come_along(package, wanted, providers)
             or bool(self.list_opaque(package))
+            or any(name != wanted for name in self.list_unknown_found(package))
             or self.is_likely(package, wanted)
         )
 
     def may_come_along(self, package: Package, wanted: str = "", providers: tuple[Provider, ...] = ()) -> bool:
-        """Whether something may come along by dependencies that are not known: those of a package that no index has or
-        that nobody is known to provide to CMake, of the members of a group, or of a release whose manifest is not
-        known. Packages called as those of interfaces are bring only others of them, and what they run with."""
+        """Whether something may come along by dependencies that are not known: those of a package that no index has, of
+        the members of a group, or of a release whose manifest is not known. Packages that are called as those of
+        interfaces are bring only others of them, and what they run with."""
         unknown = self._unknown_along(package)
         if wanted and not INTERFACES.search(wanted) and wanted not in self._with_interfaces:
             unknown = tuple(name for name in unknown if not INTERFACES.search(name))
@@ -106,7 +107,7 @@ class UnknownContents:
 
     @cached_method
     def _unknown_along(self, package: Package) -> tuple[str, ...]:
-        return (*self.list_unknown(self._view.closure(package)), *self.list_unknown_found(package))
+        return self.list_unknown(self._view.closure(package))
 
     @cached_property
     def _with_interfaces(self) -> frozenset[str]:

@@ -12,8 +12,7 @@ from msgspec import structs
 from ..markup import TOKEN, Attribute, Document, Element, decode, scan, well_formed
 from ..place import Problem, Reference
 from ..words import words_of
-from .documents import read_document
-from .flow import generation_of
+from .documents import generation_of, read_document
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
