@@ -67,17 +67,22 @@ def uninstalled_file(view: TargetView):
         if not installs and package.build_type == "catkin" and not package.build.targets:
             yield from _list_nothing(package, opened=bool(used))
         else:
-            yield from _list_opened(package, installs, used.get("file", set()))
+            yield from _list_opened(package, installs, _list_names(used))
             yield from _list_scripts(package, installs, used.get("executable", set()))
     for package in view:
         copied = list_copied(package)
         if copied:
-            yield from _list_opened(package, copied, references.get(package.name, {}).get("file", set()))
+            yield from _list_opened(package, copied, _list_names(references.get(package.name, {})))
 
 
 _ONCE = (Together("not installed"),)
 _FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
+
+
+def _list_names(used: dict[str, set[str]]) -> set[str]:
+    """The files and folders that something opens."""
+    return used.get("file", set()) | used.get("place", set())
 
 
 def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:
