@@ -564,6 +564,20 @@ def exports_of(visible: str) -> tuple[str, ...]:
     return tuple(exports)
 
 
+# What is joined to the folder of a package: literals, and whether something else follows.
+_JOINED = re.compile(r"""\s*\)*\s*((?:[+/]\s*"[^"\n]*"\s*)+)([+/])?""")
+
+
+def _place_below(after: str) -> str:
+    """The path that literals join to the folder of a package, without a last name that goes on with a variable."""
+    joined = _JOINED.match(after)
+    if joined is None:
+        return ""
+    path = "/".join(re.findall(r'"([^"]*)"', joined.group(1)))
+    parts = [part for part in (path.rpartition("/")[0] if joined.group(2) else path).split("/") if part]
+    return "" if ".." in parts else "/".join(parts)
+
+
 def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
     references: list[Reference] = []
     for match in _PACKAGE_URL.finditer(text) if '"package://' in text else ():
@@ -573,5 +587,7 @@ def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
     for match in _PACKAGE_CALL.finditer(visible) if "::getPath" in visible or "get_package_" in visible else ():
         literal = _PACKAGE_LITERAL.match(text, match.start(1))
         if literal:
-            references.append(Reference("package", literal.group(1), "", *place(literal.start(1))))
+            name = _place_below(text[literal.end() : literal.end() + 200])
+            kind = "place" if name else "package"
+            references.append(Reference(kind, literal.group(1), name, *place(literal.start(1))))
     return tuple(sorted(references, key=_by_line))

@@ -111,11 +111,14 @@ class _Found:
             self._path(package, rest, after, at, conditional)
 
     def _path(self, package: str, path: str | None, after: str, at: int, conditional: bool) -> None:
-        """A file of a package where its path is all literal, else the package alone."""
+        """A file of a package where its path is all literal, else the folder that is, or the package alone."""
         parts = [part for part in (path or "").split("/") if part not in ("", ".")]
         # What goes on with a variable, or is cut by a character no plain path has, is not the file's whole name.
         cut = after[:1] in ("$", "{", "*", "?", "[")
-        if not parts or cut or ".." in parts:
+        folder = parts if (path or "").endswith("/") else parts[:-1]
+        if cut and folder and ".." not in parts:
+            self.add("place", package, "/".join(folder), at, conditional)
+        elif not parts or cut or ".." in parts:
             self.add("package", package, "", at, conditional)
         else:
             self.add("file", package, "/".join(parts), at, conditional)

@@ -1,8 +1,10 @@
 """What the data_files of ament_python packages install, as the rules on them ask for it."""
 
 import posixpath
+from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from ...model.cmake.build import At, Install
 from ...model.workspace import Package
 
 
@@ -31,3 +33,24 @@ def read_data_files(package: Package) -> DataFiles | None:
     if not files and not any(setup.entry_points or setup.packages for _, setup in own):
         return None
     return DataFiles(code, files)
+
+
+def list_copied(package: Package) -> list[Install] | None:
+    """data_files as install rules of CMake, with the files that each pattern of glob() finds in the tree; None as for
+    read_data_files()."""
+    data = read_data_files(package)
+    if data is None:
+        return None
+    rules = []
+    for place, path in data.files:
+        pattern = posixpath.normpath(posixpath.join(package.path, path))
+        items = tuple(file for file in package.digest.files if _matches(file, pattern))
+        rules.append(Install("files", items or (pattern,), place, At(data.setup, 1)))
+    return rules
+
+
+def _matches(path: str, pattern: str) -> bool:
+    """Whether glob() finds a path, where `**` stands for any folders."""
+    if "**" not in pattern and path.count("/") != pattern.count("/"):
+        return False
+    return fnmatchcase(path, pattern.replace("**/", "*"))

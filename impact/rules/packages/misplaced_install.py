@@ -2,10 +2,10 @@
 
 What it does
     Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
-    name than code includes them by, scripts that install(FILES) or install(DIRECTORY) copies without execute
-    permission, registered components outside of `lib`, install folders of a Python version other than the target's, and
-    programs whose first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and
-    later).
+    name than code includes them by, nodes outside of `lib/` and the package's name, scripts that install(FILES) or
+    install(DIRECTORY) copies without execute permission, registered components outside of `lib`, install folders of a
+    Python version other than the target's, and programs whose first line names `python` where the target has `python3`
+    alone (Ubuntu focal, Debian bullseye and later).
 
 Why it breaks
     The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
@@ -30,9 +30,10 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.installed import copied_files
+from ...model.cmake.links import linked_items, package_of
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, Together, rule
-from .install_rules import is_installed, list_installing
+from .install_rules import is_installed, list_installing, list_references
 
 
 @rule(
@@ -58,6 +59,10 @@ from .install_rules import is_installed, list_installing
             "the component library `{subject}` is installed into `{destination}`, but containers load it from `lib`",
             "install(TARGETS {subject} LIBRARY DESTINATION lib)",
         ),
+        "program": Text(
+            "`{subject}` is installed into `{destination}`, but {command} looks in `lib/{package}`",
+            "install(TARGETS {subject} DESTINATION lib/${{PROJECT_NAME}})",
+        ),
         "python": Text(
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
@@ -68,11 +73,13 @@ from .install_rules import is_installed, list_installing
     },
 )
 def misplaced_install(view: TargetView):
+    references = list_references(view)
     for package, installs in list_installing(view):
         yield from _list_doubled(view, package, installs)
         yield from _list_not_executable(view, package, installs)
         yield from _list_renamed(view, package, installs)
         yield from _list_components(view, package, installs)
+        yield from _list_programs(view, package, installs, references.get(package.name, {}).get("executable", set()))
         yield from _list_other_python(view, package, installs)
         yield from _list_plain(view, package, installs)
 
@@ -179,16 +186,40 @@ def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
     components = {e.context for e in package.build.exports if e.how == "component" and view.active(e.conditions)}
     by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
-    placed: dict[str, list] = {}
-    for install in installs:
-        for item in install.items if install.kind == "targets" else ():
-            placed.setdefault(item, []).append(install)
+    placed = _list_placed(installs)
     for name in sorted(components & by_name & placed.keys()):
         folders = {install.destination.rstrip("/") for install in placed[name]}
         if "lib" in folders or any("$" in folder or not folder for folder in folders):
             continue
         data = {"destination": placed[name][0].destination}
         yield Diagnostic(placed[name][0].at, name, package.name, data, "component", (Doubt.LATE,))
+
+
+def _list_placed(installs) -> dict[str, list]:
+    """Targets, each with the rules that install it."""
+    placed: dict[str, list] = {}
+    for install in installs:
+        for item in install.items if install.kind == "targets" else ():
+            placed.setdefault(item, []).append(install)
+    return placed
+
+
+def _list_programs(view: TargetView, package, installs, started: set[str]) -> Iterator[Diagnostic]:
+    """Nodes of ROS 2, and programs that a launch file starts, that no rule installs where those who start them look."""
+    placed = _list_placed(installs)
+    for target in package.build.targets:
+        if target.kind != "executable" or target.name not in placed:
+            continue
+        node = view.target.ros == 2 and "rclcpp" in {package_of(item) for item in linked_items(package, target.name) or ()}
+        if not node and (target.output_name or target.name) not in started:
+            continue
+        folders = {install.destination.rstrip("/") for install in placed[target.name]}
+        if f"lib/{package.name}" in folders or any("$" in folder or not folder for folder in folders):
+            continue
+        place = placed[target.name][0]
+        command = "ros2 run" if view.target.ros == 2 else "rosrun"
+        data = {"destination": place.destination, "command": command}
+        yield Diagnostic(place.at, target.name, package.name, data, "program", (Doubt.LATE,))
 
 
 def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnostic]:

@@ -1,10 +1,10 @@
 """uninstalled-file: a file that is started or opened where the package is installed is not installed.
 
 What it does
-    Compares the install rules of CMake with the launch files, scripts and data that launch files and scripts of the
-    workspace start or open in the package's share folder, and with the folder `launch` of packages of ROS 2, and of
-    ROS 1 where other folders are installed. Reports packages of catkin that only hold data and install nothing, and
-    nodes in Python of packages that install no program.
+    Compares the install rules of CMake, or data_files of setup.py, with the launch files, scripts and data that launch
+    files and scripts of the workspace start or open in the package's share folder, and with the folder `launch` of
+    packages of ROS 2, and of ROS 1 where other folders are installed. Reports packages of catkin that only hold data
+    and install nothing, and nodes in Python of packages that install no program.
 
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
@@ -20,7 +20,7 @@ Use instead
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
 
 Not reported
-    Files that the build makes; names that are not known; packages without CMake.
+    Files that the build makes; names that are not known; data_files that setup.py computes.
 """
 
 import posixpath
@@ -31,6 +31,7 @@ from ...model.cmake.build import At
 from ...model.package import role_of_folder
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, Together, rule
+from .data_files import list_copied
 from .install_rules import is_installed, list_installing, list_places, list_references
 
 
@@ -44,7 +45,7 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
         ),
         "opened": Text(
             "`{file}` is opened through the package's share folder but is not installed",
-            "install(DIRECTORY {subject} DESTINATION {share})",
+            "{how}",
         ),
         "elsewhere": Text(
             "`{file}` is opened through the package's share folder but is installed elsewhere",
@@ -52,7 +53,7 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
         ),
         "launch": Text(
             "`{file}` cannot be launched: the folder `{subject}` is not installed",
-            "install(DIRECTORY {subject} DESTINATION {share})",
+            "{how}",
         ),
         "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
         "node": Text("`{subject}` is a node, but no rule installs it", "{how}"),
@@ -66,13 +67,22 @@ def uninstalled_file(view: TargetView):
         if not installs and package.build_type == "catkin" and not package.build.targets:
             yield from _list_nothing(package, opened=bool(used))
         else:
-            yield from _list_opened(package, installs, used.get("file", set()))
+            yield from _list_opened(package, installs, _list_names(used))
             yield from _list_scripts(package, installs, used.get("executable", set()))
+    for package in view:
+        copied = list_copied(package)
+        if copied:
+            yield from _list_opened(package, copied, _list_names(references.get(package.name, {})))
 
 
 _ONCE = (Together("not installed"),)
 _FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
+
+
+def _list_names(used: dict[str, set[str]]) -> set[str]:
+    """The files and folders that something opens."""
+    return used.get("file", set()) | used.get("place", set())
 
 
 def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:
@@ -106,9 +116,14 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
     for folder, name in _list_launch_folders(package, installs):
         missing.setdefault(folder, (name, "launch"))
     for folder, (name, kind) in missing.items():
-        at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
+        build = package.build
+        at = build.catkin_package or build.ament_package or At(build.files[0] if build.files else installs[0].at.path, 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
-        data = {"file": name, "share": share}
+        how = f"install(DIRECTORY {folder} DESTINATION {share})"
+        if package.build_type == "ament_python":
+            share = f"share/{package.name}"
+            how = f"add `('{share}/{folder}', glob('{folder}/*'))` to data_files"
+        data = {"file": name, "share": share, "how": how}
         yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_FOLDERS)
 
 
@@ -133,7 +148,8 @@ def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
     something: in ROS 1, which finds them in the source space too, an installed program of the package, or anything
     where other folders of it are installed."""
     files = _list_below(package, posixpath.join(package.path, "launch"))
-    if package.build.catkin_package is None and package.build.ament_package is None:
+    built = package.build.catkin_package or package.build.ament_package
+    if built is None and package.build_type != "ament_python":
         return  # what comes after a command that cannot be followed is not known
     if any(is_installed(package, installs, path) for path in files):
         return

@@ -184,7 +184,11 @@ def test_exports(text, expected):
     ("text", "expected"),
     [
         ('ros::package::getPath("my_pkg")', [("package", "my_pkg", "")]),
-        ('ament_index_cpp::get_package_share_directory( "my_pkg" ) + "/x"', [("package", "my_pkg", "")]),
+        ('ament_index_cpp::get_package_share_directory( "my_pkg" ) + "/x"', [("place", "my_pkg", "x")]),
+        ('ros::package::getPath("my_pkg") + "/maps/" + name', [("place", "my_pkg", "maps")]),
+        ('ros::package::getPath("my_pkg") + "/map" + number', [("package", "my_pkg", "")]),
+        ('fs::path(get_package_share_path("my_pkg")) / "a" / "b.yaml"', [("place", "my_pkg", "a/b.yaml")]),
+        ('f(ros::package::getPath("my_pkg"), "/x")', [("package", "my_pkg", "")]),
         ('f("package://my_pkg/meshes/a.dae")', [("file", "my_pkg", "meshes/a.dae")]),
         ('// "package://my_pkg/meshes/a.dae"', []),
         ("ros::package::getPath(name)", []),
