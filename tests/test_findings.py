@@ -180,6 +180,11 @@ REPEATS = [
     ("undeclared-package", "q", (Together("late", everywhere=True),), (Doubt.LATE,), "note"),
     ("removed-header", "q", (), (Doubt.LATE,), "warning"),
     ("removed-header", "q", (), (Doubt.LATE,), "warning"),
+    ("removed-header", "q", (Together("few", few=2),), (Doubt.LATE,), "warning"),
+    ("removed-header", "q", (Together("few", few=2),), (Doubt.LATE,), "warning"),
+    ("removed-header", "r", (Together("few", few=2),), (Doubt.LATE,), "warning"),
+    ("removed-header", "r", (Together("few", few=2),), (Doubt.LATE,), "note"),
+    ("removed-header", "r", (Together("few", few=2),), (Doubt.LATE,), "note"),
 ]
 
 
@@ -191,7 +196,7 @@ def test_repeats_are_notes():
     lowered = lower_repeats(diagnostics, RULES)
     assert [RULES[name].severity_of(diagnostic) for name, diagnostic in lowered] == [row[-1] for row in REPEATS]
     found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
-    assert [each.line for each in found if each.repeated] == [4, 7, 8, 10]
+    assert [each.line for each in found if each.repeated] == [4, 7, 8, 10, 16, 17]
 
 
 def test_a_fingerprint_does_not_depend_on_message_or_targets():

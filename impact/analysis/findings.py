@@ -46,21 +46,29 @@ def _never(fix: tuple[FixAction, ...], target: str) -> bool:
     return False
 
 
-def lower_repeats(yielded: Iterable[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
+def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
     """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
+    shared = [_list_shared(rules[name], diagnostic) for name, diagnostic in yielded]
+    counts = Counter(key for keys in shared for key in keys)
     told: set[tuple[str, str, str]] = set()
     result = []
-    for name, diagnostic in yielded:
-        if diagnostic.together and rules[name].severity_of(diagnostic) == "warning":
-            keys = {
-                ("", "", each.cause) if each.everywhere else (name, diagnostic.package, each.cause)
-                for each in diagnostic.together
-            }
-            if not keys.isdisjoint(told):
-                diagnostic = diagnostic._replace(doubts=(*diagnostic.doubts, Doubt.REPEATED))
-            told |= keys
+    for (name, diagnostic), keys in zip(yielded, shared, strict=True):
+        if not keys.keys().isdisjoint(told):
+            diagnostic = diagnostic._replace(doubts=(*diagnostic.doubts, Doubt.REPEATED))
+        told.update(key for key, few in keys.items() if counts[key] > few)
         result.append((name, diagnostic))
     return result
+
+
+def _list_shared(rule: Rule, diagnostic: Diagnostic) -> dict[tuple[str, str, str], int]:
+    """The causes that a warning shares with others, as it counts them, each with how many are worth one of their
+    own."""
+    if not diagnostic.together or rule.severity_of(diagnostic) != "warning":
+        return {}
+    return {
+        ("", "", each.cause) if each.everywhere else (rule.name, diagnostic.package, each.cause): each.few
+        for each in diagnostic.together
+    }
 
 
 def merge_diagnostics(

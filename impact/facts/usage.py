@@ -156,8 +156,8 @@ def stamp_of(*tables: object) -> str:
 
 
 def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[WatchedUse, ...], tuple[str, ...]]:
-    """The uses in a C++ file that a table describes, see uses_of(), and those functions
-    that such uses call and the file declares itself. Never raises."""
+    """The uses in a C++ file that a table describes, see uses_of(), and those functions that such uses call and the
+    file declares itself, or defines as macros. Never raises."""
     patterns = table.patterns
     text = scan(data).visible
     spoken = {*facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
@@ -167,7 +167,7 @@ def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[Wat
     uses = list(table.qualified_uses(facts))
     functions = []
     for word in sorted(patterns.keys() & spoken):
-        if word in table.called and declares(data, word):
+        if word in table.called and (word in facts.defined or declares(data, word)):
             functions.append(word)
         rows = table.likely_rows(word, vocabulary)
         if rows:

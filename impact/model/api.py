@@ -21,6 +21,7 @@ from ..targets.surface.offers_cpp import (
 from ..targets.surface.overrides import virtual_forms
 
 if TYPE_CHECKING:
+    from ..facts.surface import Entity
     from ..targets.asked_versions import AskedVersions
     from ..targets.surface.changes import ChangeEvent, Form, Line
     from ..targets.surface.store import SurfaceHistory
@@ -258,19 +259,23 @@ class Changes:
     def types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
         """The types that the versions asked about (the last one stored when that is any) declare for a name, as
         written there; empty where one of them declares it as a template, or none declares it. kinds: of Entity."""
-        found: set[str] = set()
+        found = list(self._entities(package, ros, name))
+        if any(entity.template is not None for entity in found):
+            return frozenset()
+        return frozenset(entity.type for entity in found if entity.kind in kinds)
+
+    def declares(self, package: str, ros: int, name: str) -> bool:
+        """Whether one of these versions declares a name."""
+        return any(True for _ in self._entities(package, ros, name))
+
+    def _entities(self, package: str, ros: int, name: str) -> Iterator[Entity]:
         for at in self._lines(package):
             history = self._history(package, at) if self._history is not None and ros in (0, at) else None
             if history is None:
                 continue
             asked = self._asked.of(package, at) if self._asked is not None else ((history.versions[-1], False),)
             for version, ahead in asked:
-                for entity in history.entities(name, version) if not ahead else ():
-                    if entity.template is not None:
-                        return frozenset()
-                    if entity.kind in kinds:
-                        found.add(entity.type)
-        return frozenset(found)
+                yield from history.entities(name, version) if not ahead else ()
 
     def _forms(self, package: str, ros: int, line: Line) -> _Forms:
         """What gives, of the events of a name of C++ in a line, how the versions that are asked about have it."""
@@ -442,16 +447,16 @@ class Vocabulary:
 
     @cached_method
     def member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
-        """The changing name that a member of a class is, with the packages of the classes in between."""
-        between: list[str] = []
-        found = None
-        for one in self.line(full):
-            name = f"{one}::{last}"
-            if name in self.names:
-                found = name, tuple(dict.fromkeys(between))
-                break
-            between.append(self.classes.get(one) or "")
-        return found
+        """The changing name that a member of a class is, with the packages of the classes in between; None where one
+        of those has the member itself, which hides that of its base."""
+        line = self.line(full)
+        place = next((n for n, one in enumerate(line) if f"{one}::{last}" in self.names), None)
+        if place is None:
+            return None
+        between = [(self.classes.get(one) or "", f"{one}::{last}") for one in line[:place]]
+        if any(package and self._changes.declares(package, self._ros, name) for package, name in between):
+            return None
+        return f"{line[place]}::{last}", tuple(dict.fromkeys(package for package, _ in between))
 
     @cached_method
     def types_of(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:

@@ -71,7 +71,8 @@ class Discovered:
 
     packages: with a manifest, sorted by path. foreign: without. ignored: found, and left out as colcon is told to.
     duplicates: (name, path, path) of packages of one name, which colcon refuses to build. problems: configuration files
-    that could not be read. lists_repositories: a file of vcstool or wstool names sources that are put beside these.
+    that could not be read. lists_repositories: a file of vcstool or wstool names sources that are put beside these, or
+    they are submodules that are not checked out.
     """
 
     def __init__(
@@ -137,7 +138,7 @@ class _Search:
         self.problems: list[PathProblem] = []
         self.unmatched: set[PathProblem] = set()
         self.files: dict[str, set[str]] = {}
-        self.lists_repositories = False
+        self.lists_repositories = any(problem.is_submodule for problem in tree.problems)
         for entry in tree.entries():
             folder, _, name = entry.path.rpartition("/")
             self.lists_repositories = self.lists_repositories or name.endswith(REPOSITORY_LISTS)

@@ -1,12 +1,13 @@
 """Preprocessor macros that a package's own CMake defines, under conditions of CMake.
 
-`#ifdef` on such a macro asks what CMake asked: `if(rclcpp_VERSION VERSION_LESS 3) add_definitions(-DFOXY)`. What other
-targets pass on with their definitions is not followed.
+`#ifdef` on such a macro asks what CMake asked: `if(rclcpp_VERSION VERSION_LESS 3) add_definitions(-DFOXY)`. A macro
+that is given to single targets is defined for those that link one of them too, and for no other target.
 """
 
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Collection, Container, Iterable, Mapping
 from functools import lru_cache
+from types import MappingProxyType
 
 from ..facts.condition import Condition
 from .cmake.build import DefinedMacro
@@ -16,9 +17,16 @@ _ASKED = re.compile(r"(?:defined\s*\(\s*(?P<whether>[A-Za-z_]\w*)\s*\)|(?P<value
 
 class Macros:
     """The macros of one package. defined: what its CMake defines. elsewhere: names that its sources #define too, of
-    which CMake does not tell."""
+    which CMake does not tell. links: the items that each target links."""
 
-    def __init__(self, defined: Iterable[DefinedMacro], elsewhere: Container[str]):
+    def __init__(
+        self,
+        defined: Iterable[DefinedMacro],
+        elsewhere: Container[str],
+        links: Mapping[str, Collection[str]] = MappingProxyType({}),
+    ):
+        self._links = links
+        self._linked: dict[str, frozenset[str]] = {}
         self._tests: dict[str, tuple[DefinedMacro, ...]] = {}
         for macro in defined:
             if macro.name not in elsewhere:
@@ -40,12 +48,29 @@ class Macros:
         macros = self._tests.get(name or value, ())
         if not macros or (value and any(m.value in ("0", "OFF", "FALSE") for m in macros)):
             return condition
-        everywhere = tuple(m for m in macros if not m.target)
-        given = {m.target for m in macros}
-        if not everywhere and (not targets or not targets <= given):
-            return condition  # what compiles the file without it is not told apart
-        told = everywhere or tuple(m for m in macros if m.target in targets)
+        told = tuple(m for m in macros if not m.target)
+        if not told:
+            given = {m.target for m in macros}
+            reached = [self._follow(target) for target in targets]
+            with_it = [linked for linked in reached if not given.isdisjoint(linked)]
+            if not reached or (with_it and len(with_it) < len(reached)):
+                return condition  # what compiles the file without it is not told apart
+            if not with_it:
+                open_ended = any("$" in item for linked in reached for item in linked)
+                return condition if open_ended else Condition("macro", "FALSE", condition.negated)
+            told = tuple(m for m in macros if any(m.target in linked for linked in with_it))
         return Condition("macro", _either(tuple(m.conditions for m in told)), condition.negated)
+
+    def _follow(self, target: str) -> frozenset[str]:
+        """A target and what it links, by links of links."""
+        if target not in self._linked:
+            found, left = {target}, [target]
+            while left:
+                new = set(self._links.get(left.pop(), ())) - found
+                found |= new
+                left += new
+            self._linked[target] = frozenset(found)
+        return self._linked[target]
 
 
 @lru_cache(1024)

@@ -34,10 +34,8 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
             others.update(f.name for f in package.build.found if f.how == "catkin")
         for name in view.roles.found_with(others - targets.keys()) if others else ():
             other = view.workspace.packages.get(name)
-            asked = (
-                max((t.public_standard for t in other.build.targets), default=0)
-                if other is not None
-                else (view.offers.standard(name))
+            asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
+                view.offers.standard(name)
             )
             year = max(year, standard_year(asked) if asked else 0)
         if year:

@@ -37,6 +37,7 @@ from .misspelling import SpellingIndex
 from .package import role_of_folder
 from .python.api import python_packages
 from .roles import Roles
+from .unknown_contents import INTERFACES, UnknownContents
 from .workspace import Package, Workspace
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
@@ -78,12 +79,6 @@ def weight(need: Need) -> tuple:
     return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
 
-# How packages of interfaces are called, and what makes interfaces and runs with them.
-_INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
-_WITH_INTERFACES = (
-    "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
-)  # fmt: skip
-
 _DEFINED = re.compile(r"\bDEFINED ENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
 # How packages are called (REP 144).
@@ -118,8 +113,6 @@ class TargetView:
         self.part: frozenset[str] | None = None
         self._whole: dict[str, frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
-        self._downloaded: dict[str, tuple[str, ...]] = {}
-        self._opaque: dict[str, list[str]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
         self._reach_of_headers = Reach(self._look_at_header)
@@ -279,7 +272,7 @@ class TargetView:
     @cached_property
     def own_modules(self) -> frozenset[str]:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
-        found = {name.removesuffix("_py") for name in self.workspace.packages} | set(self.workspace.packages)
+        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
         for package in self.workspace:
             found |= python_packages(package.digest.files)
         return frozenset(found)
@@ -448,7 +441,7 @@ class TargetView:
             p.kind == "system" for p in self.header(path)
         ):
             return Availability(symbol, "removed", target.platform, form="platform")
-        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
+        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
@@ -530,7 +523,7 @@ class TargetView:
 
     def availability(self, symbol: Symbol) -> Availability:
         """How the target stands to something outside the workspace; what the workspace brings itself is there."""
-        if any(package in self.workspace.packages for package in symbol.packages):
+        if not self.workspace.may_have.isdisjoint(symbol.packages):
             return Availability(symbol, "present")
         return self.availabilities.on_horizon(symbol)
 
@@ -589,7 +582,7 @@ class TargetView:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
-        if head in self.workspace.packages:
+        if head in self.workspace.may_have:
             return False
         if path.endswith(".py") or change.kind.startswith("python"):
             return True
@@ -647,13 +640,19 @@ class TargetView:
     @cached_method
     def may_bring(self, package: Package) -> frozenset[str]:
         """closure(), and all that packages whose manifests are not known for their version here bring in the next one
-        that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
+        that is, or in any distro: what is not in it is sure to be missing, unless something of unknown_contents
+        may come along."""
         return self.widest_spread(self.closure(package))
 
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
         return frozenset(walk(names, self._possibly_with))
+
+    @cached_property
+    def unknown_contents(self) -> UnknownContents:
+        """What may be there although nobody is known to have it."""
+        return UnknownContents(self)
 
     @cached_property
     def roles(self) -> Roles:
@@ -711,84 +710,6 @@ class TargetView:
     @cached_method
     def _installed_with(self, name: str) -> tuple[str, ...]:
         return tuple(self.installed_with(name))
-
-    def may_be_downloaded(self, package: Package, header: str) -> bool:
-        """Whether a header or its folder is called after something that the build downloads, or after a folder of the
-        package that was not read, such as a submodule."""
-        if package.name not in self._downloaded:
-            build, folder = package.build, f"{package.path}/" if package.path else ""
-            unread = {path for path in self.workspace.unread if path.startswith(folder)}
-            searched = (*(one for one, _ in build.include_dirs), *(one.item for one in build.links))
-            unread.update(one for one in searched if unread and "$" not in one and self.workspace.is_unread(one))
-            fetched = (t.name for t in build.targets if t.kind in ("fetched", "external"))
-            names = {*fetched, *(part for path in unread for part in path.removeprefix(folder).split("/"))}
-            first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - {"include", "src", "lib"})
-            self._downloaded[package.name] = tuple(one.group() for one in first if one and len(one.group()) > 2)
-        downloaded = self._downloaded[package.name]
-        return bool(downloaded) and any(part.startswith(downloaded) for part in header.lower().split("/"))
-
-    def blind(self, package: Package, name: str = "") -> bool:
-        """True when dependencies of something in the closure are not known anywhere, so that it may lack something; or
-        this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
-        unknown = self.list_unknown(self.closure(package))
-        if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
-            return any(not _INTERFACES.search(n) for n in unknown)
-        return bool(unknown)
-
-    @cached_method
-    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
-        """Those of the names whose dependencies are not known anywhere."""
-        target = self.target
-        return tuple(
-            n for n in names
-            if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
-            and not target.known_key(n)  # a key that the platform lacks brings nothing
-            and target.dependencies(n) is None and target.similar_dependencies(n) is None
-            and not target.other_generation(n)  # nor does a package that cannot be had
-        )  # fmt: skip
-
-    def brings_own_build(self, package: Package, wanted: str) -> bool:
-        """Whether something comes along that ROS releases as built with plain CMake or Meson, and that is called after
-        the library of a header or CMake package: it most likely installs what is wanted (`mrpt2`, `mrpt-maps`)."""
-        stem = re.split(r"[^a-z]", wanted.lower())[0]
-        return len(stem) > 2 and any(n.startswith(stem) and self._is_plain_build(n) for n in self.closure(package))
-
-    def opaque_libraries(self, package: Package, wanted: str = "") -> list[str]:
-        """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
-        (Gazebo and its metapackages come from their own): they may bring any system library. wanted: a header or CMake
-        package; released libraries that are called like it and whose contents are not stored may bring it too."""
-        if package.name not in self._opaque:
-            self._opaque[package.name] = [
-                n for n in self.closure(package)
-                if n not in self.workspace.packages and not n.startswith("python")
-                and (
-                    bringing := [
-                        d for d in self.debian(n)
-                        if d.endswith("-dev") or d.startswith("gazebo") or self._is_unknown_collection(d)
-                    ]
-                )
-                and (n.startswith("gazebo") or not self.providers.knows_system([n, *bringing]))
-            ]  # fmt: skip
-        stem = re.split(r"[^a-z]", wanted.lower())[0]
-        unread = [n for n in self.closure(package) if stem in n and self._is_unread_library(n)] if len(stem) > 2 else []
-        return [*self._opaque[package.name], *unread]
-
-    def _is_unknown_collection(self, debian: str) -> bool:
-        """Whether a package is no library, and of no archive that was read."""
-        return not debian.startswith("lib") and not self.apt.knows(debian)
-
-    def _is_unread_library(self, name: str) -> bool:
-        """Whether a plain build, or the build of a library that a package carries, installs what is not stored, or not
-        all of it."""
-        return self._is_plain_build(name) or (name.endswith("_vendor") and name not in self.workspace.packages)
-
-    @cached_method
-    def _is_plain_build(self, name: str) -> bool:
-        """Whether a package is a library of others that ROS releases, as built with plain CMake or Meson."""
-        if name in self.workspace.packages or self.target.version(name) is None:
-            return False
-        types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
-        return not types.isdisjoint(("cmake", "meson"))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
@@ -1012,7 +933,7 @@ class TargetView:
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
             named = providers[0].kind == "ros" and providers[0].name == include.path.partition("/")[0]
-            if not named and self.may_be_downloaded(package, include.path):
+            if not named and self.unknown_contents.is_made_apart(package, include.path):
                 continue
             if len(providers) > 1 and any(p.name == package.name for p in providers):
                 continue  # the package has one of its own
@@ -1073,7 +994,7 @@ class TargetView:
     def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
         another manifest of the workspace declares it. sure: its place tells that already."""
-        if not _PACKAGE.match(name) or not (sure or _INTERFACES.search(name) or name in self._declared_somewhere):
+        if not _PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self._declared_somewhere):
             return ()
         return (Provider("ros", name),)
 

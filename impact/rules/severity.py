@@ -7,7 +7,8 @@ rule therefore states what it knows of the place and of its evidence, and never 
     severity(*doubts_of_place(view, use.role, use.conditions), found.sure or Doubt.INCOMPLETE)
 
 Findings of one kind that are worth one warning together (what is upcoming, what is passed on to others) name it as
-Together; the first ones stay warnings and the rest become notes, when the findings of all packages are known.
+Together; where there are more than a few, the first stays a warning and the rest become notes, when the findings of all
+packages are known.
 """
 
 from __future__ import annotations
@@ -95,7 +96,9 @@ class Together(NamedTuple):
     """What findings share that are worth one warning together: lower_repeats() makes notes of the rest.
 
     cause: of the findings, within their rule and package. everywhere: those of all rules and of the whole workspace
-    count together, since one thing outside it is the cause."""
+    count together, since one thing outside it is the cause. few: so many of them are oversights, each worth a warning
+    of its own; more are a habit, of which one warning is enough."""
 
     cause: str
     everywhere: bool = False
+    few: int = 1

@@ -1,7 +1,7 @@
 """Versions as dotted numbers, compared as Debian and CMake compare plain ones."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import lru_cache
 
 _NUMBER = re.compile(r"\d+")
@@ -20,23 +20,27 @@ def number_of(digits: str) -> int:
     return int(digits[:40])
 
 
+@lru_cache(maxsize=20000)
+def _significant(version: str) -> tuple[int, ...]:
+    """The parts without zeros at their end, which tuples are compared by as if missing parts were zeros."""
+    found = parts(version)
+    while found and not found[-1]:
+        found = found[:-1]
+    return found
+
+
 def compare(a: str, b: str) -> int:
     """-1, 0 or 1. Missing parts count as 0, as in CMake's VERSION_LESS."""
-    left, right = parts(a), parts(b)
-    size = max(len(left), len(right))
-    left, right = left + (0,) * (size - len(left)), right + (0,) * (size - len(right))
+    left, right = _significant(a), _significant(b)
     return (left > right) - (left < right)
 
 
 def at_least(version: str, bound: str) -> bool:
     """True when version is bound or newer."""
-    return compare(version, bound) >= 0
+    return _significant(version) >= _significant(bound)
 
 
-def newest_up_to(bound: str, versions: Iterable[str]) -> str | None:
+def newest_up_to(bound: str, versions: Sequence[str]) -> str | None:
     """The last of some versions, oldest first, that is not newer than the bound; None where all are."""
-    found = None
-    for version in versions:
-        if at_least(bound, version):
-            found = version
-    return found
+    highest = _significant(bound)
+    return next((version for version in reversed(versions) if _significant(version) <= highest), None)

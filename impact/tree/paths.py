@@ -51,6 +51,11 @@ class PathProblem(msgspec.Struct, frozen=True, array_like=True, gc=False, order=
     path: str
     message: str
 
+    @property
+    def is_submodule(self) -> bool:
+        """True for a submodule that is not checked out."""
+        return self.message.startswith("submodule ")
+
 
 class TreeError(UserError):
     """There is no tree to read: no such folder, no such repository, no such revision. The text says what to do."""

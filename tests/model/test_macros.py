@@ -65,13 +65,27 @@ def on(version, distro="humble"):
         ([DefinedMacro("FOXY", "", "", ())], IFDEF, on(None), True),
         # Of what nothing defines nothing is known: another package's header or the user may.
         ([DefinedMacro("OTHER", "", "", ())], IFDEF, on("2.4.0"), None),
-        # What only some of the targets that compile a file are given.
+        # What another target is given.
         ([DefinedMacro("FOXY", "", "node", (OLD,))], IFDEF, on("2.4.0"), True),
-        ([DefinedMacro("FOXY", "", "tool", (OLD,))], IFDEF, on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "", "tool", (OLD,))], IFDEF, on("2.4.0"), False),
+        ([DefinedMacro("FOXY", "", "tool", (OLD,))], IFNDEF, on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "", "linked", (OLD,))], IFDEF, on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "", "linked", (OLD,))], IFDEF, on("16.0.0"), False),
     ],
 )
 def test_what_a_condition_asks(macros, condition, environment, holds):
-    assert all_hold(Macros(macros, ()).asked((condition,), ("node",)), environment) is holds
+    links = {"node": {"core"}, "core": {"linked"}}
+    assert all_hold(Macros(macros, (), links).asked((condition,), ("node",)), environment) is holds
+
+
+def test_a_macro_of_some_of_the_targets_that_compile_a_file_is_left_alone():
+    macros = Macros([DefinedMacro("FOXY", "", "node", (OLD,))], ())
+    assert macros.asked((IFDEF,), ("node", "tool")) == (IFDEF,)
+
+
+def test_a_macro_that_an_unread_link_may_bring_is_left_alone():
+    macros = Macros([DefinedMacro("FOXY", "", "tool", (OLD,))], (), {"node": {"${core_TARGETS}"}})
+    assert macros.asked((IFDEF,), ("node",)) == (IFDEF,)
 
 
 def test_a_macro_that_sources_define_too_is_left_alone():

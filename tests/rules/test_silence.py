@@ -130,6 +130,29 @@ SILENT = {
         ),
         ("CMakeLists.txt", "FetchContent_MakeAvailable(Catch2)\n", ""),
     ),
+    "a target of a library that the build downloads": Silent(
+        "removed-cmake-name",
+        ("humble",),
+        ament(
+            "include(FetchContent)\nFetchContent_Declare(yaml-cpp URL https://example.org/y.tar.gz)\n"
+            "FetchContent_MakeAvailable(yaml-cpp)\nfind_package(yaml-cpp REQUIRED)\nadd_executable(weigh weigh.cpp)\n"
+            "target_link_libraries(weigh yaml-cpp::yaml-cpp)",
+            "yaml-cpp",
+            weigh_cpp="int main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "FetchContent_MakeAvailable(yaml-cpp)\n", ""),
+    ),
+    "headers in a folder of the build that an external project fills": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "include(ExternalProject)\nExternalProject_Add(vendored_parser URL https://example.org/y.tar.gz)\n"
+            "add_executable(weigh weigh.cpp)\n"
+            "target_include_directories(weigh PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/yaml/include)",
+            weigh_cpp="#include <yaml-cpp/yaml.h>\nint main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "ExternalProject_Add(vendored_parser URL https://example.org/y.tar.gz)\n", ""),
+    ),
     "a header that is called after what the build downloads": Silent(
         "undeclared-package",
         ("humble",),
@@ -167,6 +190,21 @@ SILENT = {
             sled_cpp="#include <std_msgs/String.h>\n",
         ),
         ("package.xml", "<depend>ros1_bridge</depend>", ""),
+    ),
+    "a header for ROS 2 of a package that is made for both": Silent(
+        "unknown-header",
+        ("noetic",),
+        catkin(
+            "roscpp sensor_msgs",
+            "catkin_package()\ninclude_directories(${catkin_INCLUDE_DIRS})\n"
+            "add_executable(pull pull.cpp)\ntarget_link_libraries(pull ${catkin_LIBRARIES})\n"
+            "if(SLED_OF_ROS2)\nadd_executable(push push.cpp)\nendif()\n",
+            "roscpp",
+            "sensor_msgs",
+            pull_cpp="#include <ros/ros.h>\n#include <sensor_msgs/Imu.h>\nint main() { return 0; }\n",
+            push_cpp="#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() { return 0; }\n",
+        ),
+        ("push.cpp", "#include <rclcpp/rclcpp.hpp>\n", ""),
     ),
     "a relative import that is called like what another package had": Silent(
         "removed-symbol",
@@ -964,7 +1002,7 @@ SILENT = {
             "find_package(Boost REQUIRED COMPONENTS program_options)\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run Boost::program_options)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/program_options.hpp>\n" + MAIN,
+            run_cpp="#include <boost/program_options.hpp>\nboost::program_options::variables_map given;\n" + MAIN,
         ),
         ("CMakeLists.txt", "target_link_libraries(run Boost::program_options)\n", ""),
     ),
@@ -976,7 +1014,7 @@ SILENT = {
             "target_link_libraries(sled PUBLIC ${Boost_LIBRARIES})\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run PRIVATE sled)\ninstall(TARGETS sled DESTINATION lib)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/filesystem.hpp>\n" + MAIN,
+            run_cpp="#include <boost/filesystem.hpp>\nboost::filesystem::path place;\n" + MAIN,
             sled_cpp="int sled() { return 0; }\n",
         ),
         ("CMakeLists.txt", "target_link_libraries(run PRIVATE sled)", ""),
@@ -1030,7 +1068,8 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
+            + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",
@@ -1132,3 +1171,28 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
     assert found == [(severity, module)]
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/cv_bridge", []), ("external/vision", ["error"])])
+def test_a_submodule_that_is_not_checked_out_has_the_package_that_it_is_called_after(folder, expected, tmp_path):
+    files = ament(
+        "find_package(cv_bridge REQUIRED)\nadd_executable(look look.cpp)\n"
+        "target_link_libraries(look cv_bridge::cv_bridge)",
+        "cv_bridge",
+        look_cpp="#include <cv_bridge/cv_bridge.h>\nint main() { return 0; }\n",
+    )
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "removed-header"] == expected
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/audio", []), ("external/vision", ["warning"])])
+def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_it(folder, expected, tmp_path):
+    files = ament("", "exec_depend:audio_capture")
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected

@@ -287,9 +287,9 @@ ROWS = {
     "a package of a repository": Row(
         "unresolvable-key",
         "noetic",
-        catkin("sled", "", "catkin_package()", "exec_depend:swri_console"),
-        ("sled/package.xml", "swri_console", "swri"),
-        ("error", "swri"),
+        catkin("sled", "", "catkin_package()", "exec_depend:husky_msgs"),
+        ("sled/package.xml", "husky_msgs", "husky"),
+        ("error", "husky"),
     ),
     "a script installed as a program": Row(
         "missing-install",

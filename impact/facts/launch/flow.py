@@ -203,7 +203,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
     if not document.elements or document.elements[0].name != "launch":
         lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
         return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
-    generation = 2 if is_yaml else _generation(document)
+    generation = 2 if is_yaml else generation_of(document)
     entities: list[_Entity] = []
     depths: list[int] = []
     problems = list(document.problems)
@@ -250,7 +250,7 @@ _ONLY_2 = re.compile(r"\$\((?:var|find-pkg-share|find-pkg-prefix|find-exec|exec-
 _TAGS_1 = frozenset({"rosparam", "test", "machine"})
 
 
-def _generation(document: Document) -> int:
+def generation_of(document: Document) -> int:
     """1 or 2 by what only that generation writes, 0 where nothing tells."""
     counts = [0, 0, 0]
     for element in document.elements:

@@ -180,7 +180,8 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
     module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
     sets, read by a test. alike: of a variable that nothing can have set, one
-    that is set there and has one word more or less in its name."""
+    that is set there and has one word more or less in its name. makes: of a command, what it may make: its first
+    argument, and its DESTINATION."""
 
     kind: str
     name: str
@@ -188,6 +189,20 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     context: str = ""
     conditions: tuple[Condition, ...] = ()
     alike: str = ""
+    makes: tuple[str, ...] = ()
+
+
+class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
+    times), `mixed` (a target that is linked with keywords and without), `no target` (something is given to a target
+    that is not there yet, or never), `project` (catkin_package() or ament_package() finds another name in package.xml
+    than that of the project), `no value` (a property of set_target_properties() whose value is a variable that nothing
+    sets)."""
+
+    kind: str
+    name: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
 
 
 def for_tests(conditions: Iterable[Condition]) -> bool:
@@ -206,10 +221,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
-    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
-    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads. stops: each
-    message(FATAL_ERROR) under conditions, with its text."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. refused: names at
+    which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the
+    packages whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -235,7 +249,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
-    repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
+    refused: tuple[RefusedName, ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()

@@ -5,6 +5,7 @@ Source: catkin's API reference and the CMake files of genmsg, actionlib_msgs, dy
 
 import posixpath
 
+from ...facts.condition import Condition
 from .blocks import CommandCall
 from .build import At, GeneratedInterfaces
 from .interpreter import Interpreter, handles
@@ -30,6 +31,7 @@ _PROMISES = {
 @handles("catkin_package")
 def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_package()."""
+    run.refuse_project()
     if not run.silent:
         run.catkin_package = run.place(call.at)
         opposite = {(held.text, not held.negated) for held in run.conditions}
@@ -38,7 +40,7 @@ def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
             for target in run.targets.finish()
             if not any((held.text, held.negated) in opposite for held in target.conditions)
         )
-    for keyword, items in sections(args, _PACKAGE).items():
+    for keyword, items in sections(_mark_forgotten(args), _PACKAGE).items():
         how = _PROMISES.get(keyword)
         if how is None:
             continue
@@ -54,6 +56,23 @@ def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
 
 
+# cmake_parse_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
+_KEEPS_ALL = Condition("cmake", "CMAKE_VERSION VERSION_LESS 3.5", negated=True)
+
+
+def _mark_forgotten(args: list[Word]) -> list[Word]:
+    """Arguments, those that stand behind a keyword which comes again under the version of CMake that keeps them."""
+    last = {str(item): place for place, item in enumerate(args) if item in _PACKAGE}
+    found, keyword = [], ""
+    for place, item in enumerate(args):
+        if item in last:
+            keyword = str(item)
+        elif place < last.get(keyword, 0):
+            item = word(item, item.at, (*item.conditions, _KEEPS_ALL), item.sure)
+        found.append(item)
+    return found
+
+
 def _extras_path(run: Interpreter, item: Word) -> str:
     """The file a CFG_EXTRAS entry is made from: `cmake/x.cmake`, or the same with `.in` or `.em`."""
     base = run.tree_path(item if "/" in item else word(f"cmake/{item}", item.at))
@@ -63,6 +82,7 @@ def _extras_path(run: Interpreter, item: Word) -> str:
 @handles("catkin_metapackage")
 def catkin_metapackage(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_metapackage()."""
+    run.refuse_project()
     if not run.silent:
         run.catkin_package = run.place(call.at)
 

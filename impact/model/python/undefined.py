@@ -21,8 +21,8 @@ def list_undefined(
 ) -> Iterator[tuple[str, Import]]:
     """Such names, each as its import with the path it stands in; the module is empty for names that the file uses
     itself, and for modules, whose names have a dot. With them star imports of a package from itself. files: the Python
-    files of a package by their paths. others: what modules and libraries of the package are called. paths: all its
-    files, of which modules may be built."""
+    files of a package by their paths. others: what modules and libraries of the package, and what its build
+    makes in ways that are not known, are called. paths: all its files, of which modules may be built."""
     modules = _Modules(files, others, paths)
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
@@ -44,6 +44,51 @@ def list_undefined(
             for name in item.names if bound and module != path else ():
                 if f" {name} " not in bound and name not in others and not modules.may_be_built(name):
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
+
+
+BESIDE = "."
+"""The name that list_siblings() gives to imports."""
+UNLISTED = ".."
+"""The name that list_unlisted() gives to imports."""
+
+
+def list_siblings(
+    files: Mapping[str, PythonFile], setup: Collection[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports, in modules of a Python package, of another module of its folder as if it were at the top, which Python 3
+    finds only where the importing file itself is started. files, setup: as above. Only of modules that are imported by
+    their package, lazy but for those that starting a program imports. The name of each is BESIDE."""
+    if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
+        return  # more folders may be looked into
+    modules = _Modules(files, (), ())
+    imported = {place for path, facts in files.items() for item in facts.imports for place in modules.named(path, item)}
+    started = modules.list_started(setup)
+    for path in sorted(started | imported):
+        for item in files[path].imports:
+            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
+                yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in started)
+
+
+def list_unlisted(
+    files: Mapping[str, PythonFile], setup: Collection[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports of modules that lie in a Python package which setup() does not install, though it installs the outermost
+    one, each as an import of that package, lazy but for those that starting a program imports. files, setup: as above.
+    The name of each is UNLISTED."""
+    modules = _Modules(files, (), ())
+    started = modules.list_started(setup) if setup else frozenset()
+    for path, file in setup:
+        folder, listed = posixpath.dirname(path), set(file.packages)
+        if not listed or "*" in listed or any(one.startswith(("packages", "arguments")) for one in file.unresolved):
+            continue
+        roots = {posixpath.dirname(file.places_of(folder, name)[1]) for name in listed if "." not in name}
+        for importer, facts in files.items():
+            if posixpath.dirname(importer) in roots or not f"{importer}/".startswith(tuple(f"{r}/" for r in roots)):
+                for item in facts.imports:
+                    owners = {modules.package_of(place, roots) for place in modules.named(importer, item)}
+                    for owner in sorted(owners - listed - {""}):
+                        lazy = item.lazy or not (importer in started or facts.interpreter)
+                        yield importer, msgspec.structs.replace(item, module=owner, names=(UNLISTED,), lazy=lazy)
 
 
 class PythonOffer(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -84,7 +129,7 @@ def offer_python(
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
         if root is not None and f"{root}/__init__.py" in files:
             modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
-    return PythonOffer(modules, _Modules(files, others, paths).sources) if modules else PythonOffer()
+    return PythonOffer(modules, _Modules(files, others, paths).built) if modules else PythonOffer()
 
 
 def list_undefined_functions(
@@ -123,16 +168,19 @@ class _Modules:
         self._files, self._others, self._paths = files, others, paths
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name: dict[str, list[str]] = {}
-        # Folders with an __init__.py that lie in none such, by their names.
+        # Folders with an __init__.py that lie in none such, or in `src`, by their names.
         self._roots: dict[str, list[str]] = {}
         for path in files:
             self._by_name.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
             root = _stem_of(path)
-            if path.endswith("/__init__.py") and f"{posixpath.dirname(root)}/__init__.py" not in files:
+            around = posixpath.dirname(root)
+            outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
+            if path.endswith("/__init__.py") and outermost:
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
-    def _built(self) -> frozenset[str]:
+    def built(self) -> frozenset[str]:
+        """What may come from something else than Python, by name."""
         roots = tuple(f"{root}/" for several in self._roots.values() for root in several)
         inside = {p for folder in self._folders if f"{folder}/".startswith(roots) for p in folder.split("/")}
         return frozenset((*self.sources, *(o for o in self._others if o not in inside and o not in self._by_name)))
@@ -146,11 +194,12 @@ class _Modules:
     def may_be_built(self, name: str) -> bool:
         """Whether a module of this name may come from something else than Python: it is called like a file of another
         language, or begins as one is called."""
-        return name in self._built or _is_made(name, self.sources)
+        return name in self.built or _is_made(name, self.sources)
 
     def is_meant_by(self, item: Import) -> bool:
         """Whether an import from a package of another name, all of whose names a module of this one at the same place
-        binds, seems to mean it. Where that module has them from there itself, the other package is one."""
+        binds, seems to mean it. Where that module has them from there itself, or the package imports of the other one
+        what it does not have itself, the other package is one."""
         head, _, rest = item.module.partition(".")
         if not rest or not item.names or head in self._others or head in sys.stdlib_module_names:
             return False
@@ -160,9 +209,27 @@ class _Modules:
                 file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
                 if file is None or any(other.module == item.module for other in file.imports):
                     continue
+                if any(self._is_of_another(other, root) for other in self._imports_of.get(head, ())):
+                    continue
                 if all(f" {name} " in file.bound for name in item.names):
                     return True
         return False
+
+    @cached_property
+    def _imports_of(self) -> dict[str, list[Import]]:
+        """The absolute imports of modules in packages, by the package."""
+        found: dict[str, list[Import]] = {}
+        for item in (item for facts in self._files.values() for item in facts.imports if not item.level):
+            head, dot, _ = item.module.partition(".")
+            if dot:
+                found.setdefault(head, []).append(item)
+        return found
+
+    def _is_of_another(self, item: Import, root: str) -> bool:
+        """Whether what an import asks of another package is not at the same place below a root."""
+        stem = f"{root}/{item.module.partition('.')[2].replace('.', '/')}"
+        file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+        return file is None or not all(f" {name} " in file.bound for name in item.names)
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
@@ -193,6 +260,48 @@ class _Modules:
                 if item.module and f"{folder}/".startswith(f"{root}/") and len(several) == 1:
                     return f"{folder[len(posixpath.dirname(root)) :].lstrip('/').replace('/', '.')}.{item.module}"
         return ""
+
+    def named(self, path: str, item: Import) -> Iterator[str]:
+        """The files that an import from a package names by their package: the module, or modules among the names."""
+        module = self.absolute(path, item) if item.level else item.module
+        for stem in self._meant(module) if module else ():
+            if stem in self._stems and not stem.endswith("/__init__"):
+                yield self._stems[stem]
+            yield from (self._stems[f"{stem}/{name}"] for name in item.names if f"{stem}/{name}" in self._stems)
+
+    def list_started(self, setup: Iterable[tuple[str, SetupFile]]) -> frozenset[str]:
+        """The modules of entry points, and those that are imported, in any case, by them or by scripts."""
+        found: set[str] = set()
+        for path, file in setup:
+            for _, module, *_ in file.entry_points:
+                found.update(self._files.keys() & set(file.places_of(posixpath.dirname(path), module)))
+        waiting = [*found, *(path for path, facts in self._files.items() if facts.interpreter)]
+        while waiting:
+            path = waiting.pop()
+            for item in self._files[path].imports:
+                places = set() if item.lazy or item.conditions else set(self.named(path, item)) - found
+                found |= places
+                waiting.extend(places)
+        return frozenset(found)
+
+    def package_of(self, path: str, roots: Collection[str]) -> str:
+        """The Python package that a module lies in, below one of these folders; empty for another module."""
+        folder = posixpath.dirname(path)
+        root = next((one for one in roots if f"{folder}/".startswith(f"{one}/")), None)
+        return folder[len(posixpath.dirname(root)) :].strip("/").replace("/", ".") if root is not None else ""
+
+    @cached_property
+    def _stems(self) -> dict[str, str]:
+        return {_stem_of(path): path for path in self._files}
+
+    def is_beside(self, path: str, name: str) -> bool:
+        """Whether a module of a Python package lies beside one of this name, and none at the top is called so."""
+        folder = posixpath.dirname(path)
+        stem = posixpath.join(folder, name)
+        if name in sys.stdlib_module_names or name in self._roots or f"{folder}/__init__.py" not in self._files:
+            return False
+        inside = [_stem_of(one) == stem for one in self._by_name.get(name, ())]
+        return bool(inside) and all(inside) and self._stems[stem] != path
 
     def find(self, path: str, item: Import) -> str | None:
         """The file that an import names, None where it may be another one or none."""

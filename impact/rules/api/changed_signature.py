@@ -102,7 +102,7 @@ def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
         if change.kind == "call-changed" and change.package not in _COMPILER
     }
     refused.update((change.old, (change, None)) for change in view.changes("call-changed"))
-    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.packages}
+    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.may_have}
     for package in view if refused else ():
         yield from rate_upcoming(_list_reviewed_of(view, package, refused))
 

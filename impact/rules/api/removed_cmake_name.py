@@ -112,6 +112,7 @@ def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
     return (
         not named
         or bool(package.build.unresolved)
+        or view.unknown_contents.is_made_apart(package, name)
         or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
         or any(provider.kind == "ros" for one in named for provider in view.cmake(one)[:1])
     )

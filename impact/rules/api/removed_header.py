@@ -58,7 +58,7 @@ def removed_header(view: TargetView, package: Package):
                     kind=loss.kind, fix=loss.fix, order=order if loss.ordered else (),
                 )  # fmt: skip
             continue
-        if find_misspelt(view, package, path) is not None:
+        if find_misspelt(view, package, path, include.at.path) is not None:
             continue  # which unknown-header reports
         fault = find_interface_fault(view, path)
         found = fault.found if fault is not None else None

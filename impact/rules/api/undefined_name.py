@@ -3,9 +3,10 @@
 What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
     imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
-    name, or from a package of an unknown name in place of its own; functions of entry points that their module does not
-    define; star imports of a package from itself, which Python 2 took from a module in it; and builtins (`raw_input`,
-    `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
+    name, or from a package of an unknown name in place of its own; imports of modules that setup() does not install;
+    modules of a package that import another one of its folder by its bare name; functions of entry points that their
+    module does not define; star imports of a package from itself, which Python 2 took from a module in it; and builtins
+    (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
 
 Why it breaks
     Python raises a NameError, ImportError or AttributeError when it reaches the line.
@@ -31,6 +32,7 @@ from collections.abc import Iterator
 
 from ...facts.python.bound import PYTHON2_BUILTINS
 from ...model.package import ImportUse
+from ...model.python.undefined import BESIDE, UNLISTED
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
@@ -50,12 +52,28 @@ from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
         "itself": Text(
             "`from {module} import *` in `{module}` itself gives nothing in Python 3", "write `from .{module} import *`"
         ),
+        "beside": Text(
+            "`{subject}` is a module of the same package, where Python 3 does not look for it", "write `.{subject}`"
+        ),
+        "unlisted": Text(
+            "`{subject}` is imported, but setup() does not install this Python package",
+            "add `{subject}` to `packages`, or use find_packages()",
+        ),
         "imported": Text("`{module}` does not define `{subject}`", "import a name that `{module}` defines"),
     },
 )
 def undefined_name(view: TargetView):
     for package in view:
         for use, name in _list_uses(view, package):
+            if name == BESIDE:
+                yield from _find_beside(view, package, use)
+                continue
+            if name == UNLISTED:
+                if use.role == "run":
+                    doubts = (use.lazy is False or Doubt.LATE, package.build_type == "ament_python" or Doubt.DISTURBS)
+                    same = (Together(use.module),)
+                    yield Diagnostic(use.at, use.module, package.name, {}, "unlisted", doubts, together=same)
+                continue
             kind = "imported" if use.module else "module" if "." in name.lstrip(".") else "undefined"
             if kind != "undefined" and _may_be_of_another(view, package, use.module or name):
                 continue
@@ -82,6 +100,14 @@ def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, 
     for use in package.digest.undefined:
         if view.certain(use.conditions):
             yield use, use.names[0]
+
+
+def _find_beside(view: TargetView, package: Package, use: ImportUse) -> Iterator[Diagnostic]:
+    """An import of a module by its bare name that only Python 2 takes from the folder of the importing one."""
+    head = use.module.partition(".")[0]
+    if view.target.python_major >= 3 and not _may_be_of_another(view, package, head):
+        doubts = _doubts_of_import(view, use)
+        yield Diagnostic(use.at, head, package.name, {"module": use.module}, "beside", doubts)
 
 
 def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
@@ -124,4 +150,5 @@ def _is_of_python2(name: str) -> bool:
 
 def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
     doubts = (Doubt.LATE,) if use.lazy else ()
-    return (*doubts, Doubt.INCOMPLETE) if use.names and use.names[0].startswith(".") else doubts
+    of_any_type = use.names and use.names[0].startswith(".") and not use.module
+    return (*doubts, Doubt.INCOMPLETE) if of_any_type else doubts

@@ -2,9 +2,9 @@
 
 What it does
     Reports fields and constants of messages, services and actions of other packages that the target's release of the
-    package has no longer, or not yet; the same for interfaces that Python imports. Whose field it is, is told by the
-    declared type of the variable, followed through nested messages. Says as well what goes when a dated target's
-    distro is updated.
+    package has no longer, or not yet; the same for interfaces that Python imports, also from packages of the workspace.
+    Whose field it is, is told by the declared type of the variable, followed through nested messages. Says as well what
+    goes when a dated target's distro is updated.
 
 Why it breaks
     The compiler stops with "has no member named"; Python raises an AttributeError when the line is reached, on the
@@ -23,10 +23,11 @@ Use instead
 
 Not reported
     Code that a version test excludes on the target, or that stands under a test which cannot be told; variables whose
-    type does not show, unless only one interface of those that the file uses has such a name; interfaces that the
-    workspace itself brings.
+    type does not show, unless only one interface of those that the file uses has such a name; fields of interfaces that
+    the workspace itself brings.
 """
 
+import posixpath
 from collections.abc import Iterator
 
 from ...model.package import MemberUse
@@ -44,6 +45,8 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
     scope="target",
     texts={
         **availability_texts(),
+        "root": Text("`{interface}` does not have `{subject}`: it is in `{module}`", "import it from `{module}`"),
+        "none": Text("`{interface}` has no interface `{module}`", "correct the name, or add the interface"),
         "field removed": Text(f"{_MISSING}[[ (removed in {{since}})]]", _HELP),
         "field not yet": Text(f"{_MISSING}[[ (added in {{since}})]]", _HELP),
         "field upcoming": Text(
@@ -68,6 +71,7 @@ def unknown_field(view: TargetView):
     for package in view:
         yield from rate_upcoming(_list_members(view, package, own, named))
         yield from rate_upcoming(_list_imports(view, package, named))
+        yield from _list_of_workspace(view, package)
 
 
 def _list_members(
@@ -103,6 +107,35 @@ def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterat
             if found.is_missing and full not in named and view.active(imported.conditions):
                 doubts = (*doubts_of_place(view, imported.role, imported.conditions), Doubt.LATE)
                 yield diagnose(found, imported.at, full, package.name, doubts)
+
+
+def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Interfaces that Python imports from a package of the workspace which does not have them, or not there."""
+    for imported in package.digest.imports:
+        name, _, kind = imported.module.partition(".")
+        owner = view.workspace.packages.get(name)
+        if owner is None or not owner.is_interface_package or not view.certain(imported.conditions):
+            continue
+        interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.digest.interfaces}
+        doubts = (*doubts_of_place(view, imported.role), not imported.lazy or Doubt.LATE)
+        for one in imported.names:
+            if not kind and one in interfaces and one not in owner.digest.modules:
+                data = {"interface": name, "module": f"{name}.{interfaces[one]}"}
+                yield Diagnostic(imported.at, one, package.name, data, "root", doubts)
+            elif kind in ("msg", "srv", "action") and not _may_have(owner, one, interfaces):
+                full = f"{imported.module}.{one}"
+                yield Diagnostic(imported.at, full, package.name, {"interface": name, "module": one}, "none", doubts)
+
+
+def _may_have(owner: Package, name: str, interfaces: dict[str, str]) -> bool:
+    """Whether a package may have an interface, or something that is made of one. interfaces: the kinds of its own by
+    their names, as far as they were read."""
+    listed = [path for made in owner.build.generated for path in made.files]
+    if not name[:1].isupper() or owner.build.unresolved or not listed or "idl" in interfaces.values():
+        return True
+    if any("$" in path or posixpath.basename(path).partition(".")[0] not in interfaces for path in listed):
+        return True
+    return name in owner.digest.modules or any(name.startswith(one) for one in interfaces)
 
 
 def _list_spellings(use: MemberUse) -> tuple[str, ...]:

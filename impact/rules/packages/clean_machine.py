@@ -50,7 +50,8 @@ def doubts_of_chance(view: TargetView, package: Package, need: Need) -> tuple[Do
     installed = view.roles.on_build_farm(package)
     if not stops or not view.target.ever_released(package.name) or view.answered(need.providers, installed):
         return (Doubt.LUCKY,)
-    return (Doubt.INCOMPLETE,) if is_grouped(package) or view.list_unknown(installed) else ()
+    unknown = view.unknown_contents
+    return (Doubt.INCOMPLETE,) if unknown.may_come_along(package) or unknown.list_unknown(installed) else ()
 
 
 def doubts_of_compiled(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
@@ -118,22 +119,16 @@ def _of_include(view: TargetView, package: Package, need: Need, name: str) -> tu
 
 
 def _unknown(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
-    """INCOMPLETE where something that comes along has dependencies or contents that are not known, so that it may bring
-    what is needed."""
-    if is_grouped(package) or view.blind(package, name) or view.answered(need.providers, view.may_bring(package)):
+    """What speaks against an error where something that comes along has dependencies or contents that are not known,
+    so that it may bring what is needed."""
+    opaque = view.unknown_contents.list_opaque(package) if need.providers[0].kind == "system" else ()
+    # A key that installs no library itself is there for what it brings along.
+    if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque)):
+        return (Doubt.DISPENSABLE,)
+    if opaque or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
-    opaque = view.opaque_libraries(package, need.subject) if need.providers[0].kind == "system" else ()
-    if opaque:
-        # A key that installs no library itself is there for what it brings along.
-        collects = any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque))
-        return (Doubt.DISPENSABLE if collects else Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
-
-
-def is_grouped(package: Package) -> bool:
-    """True for a package that depends on a group: any member that is there can bring anything."""
-    return any(d.kind == "group" for d in package.manifest.dependencies)
 
 
 def _is_generated(view: TargetView, name: str, header: str) -> bool:
@@ -150,8 +145,8 @@ def _stops_another(view: TargetView, package: Package, need: Need) -> bool:
         for include in other.digest.includes:
             if include.role != "build" or not include.targets or not view.certain(include.conditions):
                 continue
-            if need.subject not in view.outward((include.path,))[0] or view.blind(other):
+            if need.subject not in view.outward((include.path,))[0]:
                 continue
-            if not view.answered(need.providers, view.may_bring(other)):
+            if not view.unknown_contents.may_come_along(other, need.subject, need.providers):
                 return True
     return False

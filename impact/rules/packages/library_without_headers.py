@@ -76,9 +76,7 @@ def _lacks(view: TargetView, package, need) -> bool:
     """True when compiled code is sure not to find the headers: nothing that is declared brings them in turn."""
     if need.how == "include" and not need.targets:
         return False
-    if not need.required or view.blind(package) or view.opaque_libraries(package):
-        return False
-    return not view.answered(need.providers, view.may_bring(package))
+    return need.required and not view.unknown_contents.may_hold(package, need.subject, need.providers)
 
 
 def _list_handed_on(view: TargetView, package, declared, bare, need, seen):

@@ -3,7 +3,7 @@
 What it does
     Compares the packages that a package exports with those that dependants need: packages that installed headers
     include or that an exported target links publicly and that are not exported, and in catkin packages of which its
-    messages are made.
+    messages are made, or all where no package is handed on.
 
 Why it breaks
     The package builds, and every package that depends on it fails: CMake stops at a target that is not found, or the
@@ -36,6 +36,7 @@ from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
 _ONCE = (Together("not exported"),)
+_EACH = (Together("not exported", few=3),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 
@@ -47,6 +48,10 @@ _ADD = "add `{subject}` to ament_export_dependencies"
             "call find_dependency({subject}) in the configuration",
         ),
         "include": Text("an installed header includes `{header}`, but `{subject}` is not exported", _ADD),
+        "catkin": Text(
+            "an exported header includes `{header}`, but catkin_package() has no CATKIN_DEPENDS",
+            "name the packages that the headers and libraries need",
+        ),
         "messages": Text(
             "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
             "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
@@ -56,6 +61,7 @@ _ADD = "add `{subject}` to ament_export_dependencies"
 def missing_export(view: TargetView, package: Package):
     if package.build.catkin_package is not None:
         yield from _list_of_messages(view, package)
+        yield from _list_of_catkin_headers(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         seen: set[str] = set()
@@ -74,6 +80,8 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
     reach = {name.lower() for name in ament.found}
     found = {f.name.lower(): f for f in package.build.found}
     by_target = at_least(view.target.version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
+    # A habit of those whose libraries are loaded; whoever links a library stops at each of them.
+    together = _ONCE if is_only_loaded(view, package) else _EACH
     for target in exported_targets(package):
         if not view.certain(target.conditions):
             continue
@@ -89,15 +97,16 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
-                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=_ONCE)
+                yield Diagnostic(
+                    link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=together
+                )
                 continue
-            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=_ONCE)
+            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=together)
 
 
 def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
-    exports_targets = any(e.how == "ament_export_targets" for e in package.build.exports)
-    if link.how == "ament" and not exports_targets and is_only_loaded(view, package):
-        return (Doubt.UNCOMPILED,)
+    if is_only_loaded(view, package) and not package.digest.public_headers:
+        return (Doubt.UNCOMPILED,)  # without headers nobody links it
     if _comes_with_client_library(view, name):
         return (Doubt.DISPENSABLE,)
     other = view.workspace.packages.get(name)
@@ -109,7 +118,7 @@ def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name:
 
 def _comes_with_client_library(view: TargetView, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
-    return name in view.spread(("rclcpp",))
+    return name in view.spread(("rclcpp" if view.target.ros == 2 else "roscpp",))
 
 
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
@@ -146,4 +155,19 @@ def _list_of_messages(view: TargetView, package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
                 reach |= {name}
-                yield Diagnostic(at, name, package.name, kind="messages", doubts=(Doubt.DISTURBS,), together=_ONCE)
+                doubt = Doubt.DISPENSABLE if _comes_with_client_library(view, name) else Doubt.DISTURBS
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=(doubt,), together=_ONCE)
+
+
+def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
+    hows = {e.how for e in package.build.exports if view.active(e.conditions)}
+    if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
+        return
+    found = {f.name for f in package.build.found if f.how == "catkin"}
+    for need in view.weighed(package):
+        if need.how == "include" and need.public and need.certain and any(p.name in found for p in need.providers):
+            data = {"header": need.subject}
+            at = package.build.catkin_package
+            yield Diagnostic(at, "CATKIN_DEPENDS", package.name, data, "catkin", (Doubt.DISTURBS,))
+            return

@@ -84,7 +84,9 @@ def missing_find_package(view: TargetView, package: Package):
         if not view.is_package(name) and (name in prefixes or view.cmake(name) or near.nearest(name)):
             continue  # a library, or a name that is misspelt
         # The configuration of a library whose contents are not known may find others.
-        opaque = not view.is_package(name) or any(view.opaque_libraries(package, f.name) for f in package.build.found)
+        opaque = not view.is_package(name) or any(
+            view.unknown_contents.may_hold(package, f.name) for f in package.build.found
+        )
         doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
     sought = {fold(f.name) for f in package.build.found if f.name in outside}

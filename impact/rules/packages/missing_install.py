@@ -2,7 +2,8 @@
 
 What it does
     Compares the install rules of CMake with what the package offers: executables that launch files start, or beside
-    others that are installed, and libraries that are exported, linked by installed ones, or named as plugins.
+    others that are installed, or of a package that installs no target at all, and libraries that are exported, linked
+    by installed ones, or named as plugins.
 
 Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
@@ -19,18 +20,21 @@ Use instead
     install(TARGETS tcp_socket_node udp_socket_node ...)
 
 Not reported
-    Tests, examples and benchmarks; static libraries; packages without CMake.
+    Tests, examples and benchmarks; static libraries; packages without CMake; packages of ROS 1 that install no target
+    and were never released.
 """
 
 import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.cmake.build import for_tests
 from ...model.package import role_of_folder
 from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .install_rules import is_installed, list_installing, list_references
 
+_ONCE = (Together("no target installed"),)
 _TARGETS = "add it to install(TARGETS ...)"
 
 
@@ -42,6 +46,7 @@ _TARGETS = "add it to install(TARGETS ...)"
         "plugin": Text("`{subject}` is not installed, although a plugin description names it", _TARGETS),
         "linked": Text("`{subject}` is not installed, although an installed target links it", _TARGETS),
         "program": Text("`{subject}` is not installed, although other executables are", _TARGETS),
+        "nothing": Text("`{subject}` is not installed: `{package}` installs no target at all", _TARGETS),
     },
 )
 def missing_install(view: TargetView):
@@ -63,6 +68,7 @@ def _list_targets(view: TargetView, package, installs, started: set[str]) -> Ite
             target.name in installed
             or target.kind not in ("executable", "library", "module")
             or not view.certain(target.conditions)
+            or for_tests(target.conditions)
         ):
             continue
         name = target.output_name or target.name
@@ -79,11 +85,22 @@ def _list_targets(view: TargetView, package, installs, started: set[str]) -> Ite
             t.name in installed for t in package.build.targets if t.kind == "executable"
         ):
             why = "program"
+        elif target.kind == "executable" and not installed and _is_to_be_installed(view, package, installs):
+            why = "nothing"
         if why and (why == "started" or not _is_aside(package, target)):
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
             stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
             doubts = () if stops and not package.build.unresolved else (Doubt.DISTURBS,)
-            yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts)
+            together = _ONCE if why == "nothing" else ()
+            yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts, together=together)
+
+
+def _is_to_be_installed(view: TargetView, package, installs) -> bool:
+    """Whether the programs of a package are of use only where they are installed: ros2 run finds no others, and a
+    Debian package holds no others."""
+    if package.build.unresolved or any("$" in item for install in installs for item in install.items):
+        return False
+    return view.target.ros == 2 or view.target.ever_released(package.name)
 
 
 def _is_started(view: TargetView, package, name: str) -> bool:

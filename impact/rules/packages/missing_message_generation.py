@@ -44,5 +44,7 @@ def missing_message_generation(view: TargetView, package: Package):
     if found & generators or generators & view.spread(found & {"genmsg"}):
         return
     through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
-    doubts = (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.blind(package) else ()
+    doubts = (
+        (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.unknown_contents.may_come_along(package) else ()
+    )
     yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)

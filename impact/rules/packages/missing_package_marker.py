@@ -24,6 +24,7 @@ from ...model.cmake.build import At
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Text, rule
+from .data_files import read_data_files
 
 _INDEX = "share/ament_index/resource_index/packages"
 
@@ -36,18 +37,11 @@ _INDEX = "share/ament_index/resource_index/packages"
     ),
 )
 def missing_package_marker(view: TargetView, package: Package):
-    own = [(path, setup) for path, setup in package.digest.setup if posixpath.dirname(path) == package.path]
-    code = next((path for path, _ in own if posixpath.basename(path) == "setup.py"), None)
-    if package.build_type != "ament_python" or code is None:
+    data = read_data_files(package)
+    if data is None:
         return
-    if any(setup.problems or any("data_files" in clause or "arguments" in clause for clause in setup.unresolved)
-           for _, setup in own):  # fmt: skip
-        return
-    files = [(posixpath.normpath(destination), path) for _, setup in own for destination, path, _ in setup.data_files]
-    if not files and not any(setup.entry_points or setup.packages for _, setup in own):
-        return
-    markers = [path for destination, path in files if destination == _INDEX]
+    markers = data.find_in(_INDEX)
     # nonexistent-setup-path reports markers that do not exist.
     named = any(posixpath.basename(path) in (package.name, "*") for path in markers)
     if not named and all(posixpath.join(package.path, path) in package.files for path in markers):
-        yield Diagnostic(At(code, 1), package.name, package.name, {"index": _INDEX})
+        yield Diagnostic(At(data.setup, 1), package.name, package.name, {"index": _INDEX})

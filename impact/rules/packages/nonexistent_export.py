@@ -82,6 +82,7 @@ def nonexistent_export(view: TargetView, package: Package):
         yield from _list_of_catkin(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
+        yield from _list_without_headers(view, package)
         yield from _list_of_ament(view, package, ament.exports)
         yield from _list_unknown_packages(view, package, ament.dependencies)
 
@@ -102,22 +103,32 @@ def _list_directories(view: TargetView, package):
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 
 
+# The exports of libraries to link.
+_OF_LIBRARIES = frozenset({"ament_export_libraries", "libraries"})
+
+
 def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Include directories of the source space that have headers, none of which an install rule takes."""
     installs = [i for i in package.build.installs if view.active(i.conditions)]
     exports = [e for e in package.build.exports if view.certain(e.conditions)]
     libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
-    offers = any(e.how == "libraries" and e.item in libraries for e in exports)
+    offers = any(e.how in _OF_LIBRARIES and e.item in libraries for e in exports)
     if not offers and package.name not in view.workspace.includers:
         return  # nobody uses the headers
     if package.build.unresolved or any("$" in item for i in installs for item in i.items):
         return
+    catkin = package.build_type == "catkin"
     for export in exports:
-        folder = posixpath.normpath(export.item) if export.how == "include_dirs" else "$"
+        folder = "$"
+        if export.how == "include_dirs":
+            folder = posixpath.normpath(export.item)
+        elif export.how == "ament_export_include_directories" and posixpath.normpath(export.item) == "include":
+            folder = posixpath.join(package.path, "include")
         headers = [path for path in package.digest.headers if path.startswith(f"{folder}/")]
         if not headers or any(is_installed(package, installs, path) for path in headers):
             continue
-        data = {"directory": folder[len(package.path) :].lstrip("/"), "place": "${CATKIN_GLOBAL_INCLUDE_DESTINATION}"}
+        place = "${CATKIN_GLOBAL_INCLUDE_DESTINATION}" if catkin else "include"
+        data = {"directory": folder[len(package.path) :].lstrip("/"), "place": place}
         yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
 
 
@@ -136,10 +147,12 @@ def _list_of_catkin(view: TargetView, package):
                 "/" in export.item
                 or export.item.startswith("-")
                 or export.item.endswith((".so", ".a"))
-                or view.cmake(export.item)
+                or (view.cmake(export.item) and export.item != package.name)
             ):
                 continue
-            sure = view.certain(export.conditions) and _is_own(view, package, export.item)
+            # Some export their own name by habit, and nobody asks for it.
+            asked = export.item != package.name
+            sure = asked and view.certain(export.conditions) and _is_own(view, package, export.item)
             doubts = () if sure else (Doubt.AMBIGUOUS,)
             yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):

@@ -24,9 +24,9 @@ Not reported
 from ....edges.memory import kept_with
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.target import Provider
 from ..evidence import present
 from ..rule import Declare, Diagnostic, Doubt, Text, rule
-from .clean_machine import is_grouped
 
 # What the packages that make tests of some kind are made of.
 _TESTS = "ament_cmake_test"
@@ -75,7 +75,7 @@ def find_test_commands(view: TargetView) -> dict[str, str]:
 
 
 def _doubts(view: TargetView, package, name: str, conditions) -> tuple[Doubt, ...]:
-    if is_grouped(package) or view.blind(package) or name in view.may_bring(package):
+    if view.unknown_contents.may_come_along(package, name, (Provider("ros", name),)):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)
     return () if sure else (Doubt.CONDITIONAL,)

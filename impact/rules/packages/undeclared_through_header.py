@@ -37,7 +37,7 @@ from .clean_machine import doubts_of_compiled
     ),
 )
 def undeclared_through_header(view: TargetView, package: Package):
-    if not package.digest.includes or view.blind(package):
+    if not package.digest.includes or view.unknown_contents.may_come_along(package):
         return
     closure = view.may_bring(package)
     reported: set[str] = {package.name}

@@ -3,9 +3,10 @@
 What it does
     Reports ament packages that install headers but export neither include directories nor a target, where they install
     a library too and another package of the workspace includes the headers, or where headers are all that they build
-    and install; that export only the include directories of a library which nothing in the package links or loads; and
-    packages of headers alone, or of catkin with a library, whose exported headers include a system library outside the
-    compiler's default path that they do not export.
+    and install; that export a target without the folder of its headers; packages that export only the include
+    directories of a library which nothing in the package links or loads; and packages of headers alone, or of catkin
+    with a library, whose exported headers include a system library outside the compiler's default path that they do not
+    export.
 
 Why it breaks
     The package builds, and every package that includes its headers stops: "No such file or directory".
@@ -21,8 +22,11 @@ Not reported
     Packages that ament_auto exports, or that find the library in a file of CONFIG_EXTRAS.
 """
 
+import posixpath
 from collections.abc import Iterator
 
+from ...model.cmake.build import CMakeExport
+from ...model.cmake.links import exported_targets
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
@@ -38,9 +42,17 @@ from .include_folders import OFF_PATH
             "`{package}` installs headers but exports neither include directories nor a target",
             "call ament_export_targets or ament_export_include_directories",
         ),
+        "folder": Text(
+            "`{subject}` is exported without the folder of its installed headers",
+            "target_include_directories({subject} ... $<INSTALL_INTERFACE:include/${{PROJECT_NAME}}>)",
+        ),
         "library": Text(
             "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
             "call ament_export_targets() or ament_export_libraries()",
+        ),
+        "catkin library": Text(
+            "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
+            "add it to LIBRARIES of catkin_package()",
         ),
         "include directory": Text(
             "an installed header includes `{header}`, but the include directory of `{subject}` is not exported",
@@ -54,7 +66,11 @@ def unexported_include_directory(view: TargetView, package: Package):
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_off_path(view, package, ament)
-        yield from _list_without_library(view, package, ament)
+        yield from _list_without_folder(view, package, ament)
+        yield from _list_without_library(view, package, ament.exports)
+    elif package.build.catkin_package is not None:
+        exports = [e for e in package.build.exports if view.active(e.conditions)]
+        yield from _list_without_library(view, package, exports)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -79,6 +95,25 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
 
 
+def _list_without_folder(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+    """Exported targets of a package with installed headers, none of which tells those who link it where these lie."""
+    build = package.build
+    if "ament_export_include_directories" in ament.hows or "cfg_extras" in ament.hows or build.unresolved:
+        return
+    targets = list(exported_targets(package))
+    headers = [path for path in package.digest.public_headers if "/include/" in f"/{path}"]
+    if not targets or not headers or any("$" in link.item for t in targets for link in t.links if link.how != "ament"):
+        return
+    given = {place for rule_ in build.installs if rule_.kind == "targets" for place in rule_.includes}
+    if given or any(target.installed_includes for target in build.targets):
+        return
+    compiled = {name for path, names in package.digest.source_targets if path in headers for name in names}
+    for target in targets:
+        if (target.name in compiled or target.kind == "interface") and view.certain(target.conditions):
+            yield Diagnostic(target.at, target.name, package.name, kind="folder", doubts=(Doubt.DISTURBS,))
+            return
+
+
 def _has_headers_alone(view: TargetView, package: Package) -> bool:
     """Whether headers are all that a package builds and installs."""
     build = package.build
@@ -88,25 +123,31 @@ def _has_headers_alone(view: TargetView, package: Package) -> bool:
     return bool(installs) and all(i.destination.lstrip("/").partition("/")[0] == "include" for i in installs)
 
 
-def _list_without_library(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
+def _list_without_library(view: TargetView, package: Package, exports: list[CMakeExport]) -> Iterator[Diagnostic]:
     """Libraries that nothing in the package links or loads, and whose headers alone are exported."""
-    if "ament_export_include_directories" not in ament.hows or package.build.unresolved or package.digest.registered:
+    folders = tuple(f"{posixpath.normpath(e.item)}/" for e in exports if e.how in _OF_FOLDERS)
+    if not folders or package.build.unresolved or package.digest.registered or package.digest.plugins:
         return
-    if any(e.how in _OFFERS or "$" in e.item for e in ament.exports):
+    if any(e.how in _OFFERS or "$" in e.item for e in exports):
         return
-    installed = list_installed_targets(package)
-    public = frozenset(package.digest.public_headers)
+    catkin = package.build.catkin_package is not None
+    public = [p for p, _ in package.digest.source_targets if p.startswith(folders)] if catkin else ()
+    offered = frozenset(public or package.digest.public_headers)
     linked = {link.item for target in package.build.targets for link in target.links}
-    headers = {name for path, names in package.digest.source_targets if path in public for name in names}
+    headers = {name for path, names in package.digest.source_targets if path in offered for name in names} - linked
+    # Those who find a package of catkin in the devel space ask for no install rule.
+    made = headers if catkin else headers & list_installed_targets(package)
     for target in package.build.targets:
-        if target.kind != "library" or target.name not in installed & headers - linked:
-            continue
-        if view.certain(target.conditions):
-            yield Diagnostic(target.at, target.name, package.name, kind="library", doubts=(Doubt.DISTURBS,))
+        if target.kind == "library" and target.name in made and view.certain(target.conditions):
+            kind = "catkin library" if catkin else "library"
+            yield Diagnostic(target.at, target.name, package.name, kind=kind, doubts=(Doubt.DISTURBS,))
 
 
 # What tells dependants about a library, or loads it.
-_OFFERS = frozenset({"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "plugin_description"})
+_OFFERS = frozenset(
+    {"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "libraries", "plugin_description"}
+)
+_OF_FOLDERS = frozenset({"ament_export_include_directories", "include_dirs"})
 
 
 def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:

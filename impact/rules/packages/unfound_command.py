@@ -28,6 +28,7 @@ Not reported
 import re
 
 from ...model.cmake.build import for_tests
+from ...model.unknown_contents import FINDING
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
@@ -58,10 +59,9 @@ def unfound_command(view: TargetView, package: Package):
     calls = [use for use in build.uses if use.kind == "command" and use.name in commands]
     if not calls or not build.project or any("find_package(" in reason for _, reason in build.unresolved):
         return
-    hows = ("find_package", "catkin", "ament_auto", "ament_lint_auto")
-    found = [f for f in build.found if f.how in hows]
-    if any(not view.cmake(f.name) for f in found):
-        return  # what a private package finds along is not known
+    found = [f for f in build.found if f.how in FINDING]
+    if view.unknown_contents.list_unknown_found(package):
+        return
     with_tests = _list_reached(view, package, {f.name for f in found})
     built = _list_reached(view, package, {f.name for f in found if not for_tests(f.conditions)})
     seen = set()
@@ -79,7 +79,7 @@ def unfound_command(view: TargetView, package: Package):
         owner = _name_to_find(view, package, owners)
         if owner not in seen:
             seen.add(owner)
-            known = not build.unresolved and not view.list_unknown(frozenset(reached))
+            known = not build.unresolved and not view.unknown_contents.list_unknown(frozenset(reached))
             doubts = (*doubts_of_place(view, "build", use.conditions), known or Doubt.INCOMPLETE)
             together = view.target.ros == 2 or Doubt.LUCKY
             yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, doubts=(*doubts, together))

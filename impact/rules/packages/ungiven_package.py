@@ -50,7 +50,8 @@ def ungiven_package(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
     everywhere |= {package_of(link.item) for link in package.build.links}
-    found = {f.name for f in package.build.found} - {package.name}
+    all_found = {f.name for f in package.build.found}
+    found = all_found - {package.name}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     seen = set()
@@ -62,7 +63,7 @@ def ungiven_package(view: TargetView, package: Package):
         owners = {p.name for p in providers}
         if not owners.isdisjoint(("", package.name)) or (
             (system := tuple(p for p in providers if p.kind != "ros"))
-            and (view.blind(package) or view.answered(system, view.closure(package)))
+            and (view.unknown_contents.may_come_along(package) or view.answered(system, view.closure(package)))
         ):
             continue  # the compiler finds it by itself
         names = owners & found  # of several possible owners, the one that CMake finds
@@ -84,7 +85,7 @@ def ungiven_package(view: TargetView, package: Package):
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
-                if view.list_unknown(frozenset(given & view.declared(package).keys())):
+                if view.unknown_contents.list_unknown(frozenset(given & (view.declared(package).keys() | all_found))):
                     items = None  # what one of them brings is not known
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)

@@ -2,8 +2,9 @@
 
 What it does
     Compares the install rules of CMake with the launch files, scripts and data that launch files and scripts of the
-    workspace start or open in the package's share folder, and with the folder `launch` of packages of ROS 2. Reports
-    packages of catkin that only hold data and install nothing.
+    workspace start or open in the package's share folder, and with the folder `launch` of packages of ROS 2, and of
+    ROS 1 where other folders are installed. Reports packages of catkin that only hold data and install nothing, and
+    nodes in Python of packages that install no program.
 
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
@@ -54,6 +55,7 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
             "install(DIRECTORY {subject} DESTINATION {share})",
         ),
         "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
+        "node": Text("`{subject}` is a node, but no rule installs it", "{how}"),
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
@@ -69,6 +71,7 @@ def uninstalled_file(view: TargetView):
 
 
 _ONCE = (Together("not installed"),)
+_FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
@@ -106,7 +109,7 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
         at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         data = {"file": name, "share": share}
-        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_ONCE)
+        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_FOLDERS)
 
 
 def _list_below(package, folder: str) -> list[str]:
@@ -127,31 +130,56 @@ _LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
 
 def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
     """The folder of launch files where no rule installs any file of it, with a launch file in it that starts or opens
-    something: in ROS 1, which finds them in the source space too, an installed program of the package."""
+    something: in ROS 1, which finds them in the source space too, an installed program of the package, or anything
+    where other folders of it are installed."""
     files = _list_below(package, posixpath.join(package.path, "launch"))
     if package.build.catkin_package is None and package.build.ament_package is None:
         return  # what comes after a command that cannot be followed is not known
     if any(is_installed(package, installs, path) for path in files):
         return
     programs = {item for install in installs if install.kind == "targets" for item in install.items}
+    catkin = package.build_type == "catkin"
+    siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
     for use in package.digest.references:
         path, r = use.at.path, use.reference
-        own = (r.kind, r.package) == ("executable", package.name) and r.name in programs
-        if use.role == "run" and path in files and (own if package.build_type == "catkin" else _LAUNCH.search(path)):
+        own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
+        if use.role == "run" and path in files and (own if catkin else _LAUNCH.search(path)):
             yield "launch", path[len(package.path) :].lstrip("/")
             return
 
 
+# Folders where programs of packages lie, and modules that programs import to be nodes.
+_OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
+_OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
+
+
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
-    """Scripts that a launch file starts, or that lie beside programs that are installed, and that no rule installs."""
+    """Scripts that no rule installs: those that a launch file starts, that lie beside programs which are installed, or
+    that are nodes: of ROS 2, which starts none from the source space, or of a package without other programs."""
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
+    nodes = _list_nodes(package, installs)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     for path in (*package.digest.scripts, *package.digest.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
-        if (name in scripts or beside) and name not in others and not is_installed(package, installs, path):
+        node = path in nodes
+        if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
-            kind = "script" if name in scripts else "beside"
+            kind = "script" if name in scripts else "beside" if beside else "node"
             yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)
+
+
+def _list_nodes(package, installs) -> frozenset[str]:
+    """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
+    source space starts them as well, those of a package that makes and installs no program at all.
+    catkin_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
+    """
+    made = any(t.kind == "executable" for t in package.build.targets)
+    has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
+    if not installs or (has_programs and package.build.ament_package is None):
+        return frozenset()
+    nodes = {use.at.path for use in package.digest.imports if use.module.partition(".")[0] in _OF_NODES}
+    inside = {path: path[len(package.path) :].lstrip("/") for path in package.digest.scripts if path in nodes}
+    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and role_of_folder(i) is None)

@@ -10,7 +10,8 @@ Why it breaks
 Severity
     error where another package of the workspace compiles the including header and each package is installed into a
     place that others look in (ROS 2); warning; note where no dependant of the workspace includes headers of the package
-    and the including header lies in a folder of implementation details.
+    and the including header lies in a folder of implementation details, and for all but the first where more than two
+    are missing.
 
 Example
     install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h")   # and a.h includes "p/b.hpp"
@@ -29,9 +30,10 @@ from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .dependants import compiled_elsewhere
 
+_ONCE = (Together("header not installed", few=2),)
 _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 
 
@@ -62,7 +64,7 @@ def uninstalled_header(view: TargetView, package: Package):
             reported.add(to)
             data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
             doubts = _doubts(view, package, path)
-            yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
+            yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts, together=_ONCE)
 
 
 def _doubts(view: TargetView, package: Package, path: str) -> tuple[Doubt, ...]:

@@ -3,16 +3,19 @@
 What it does
     Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
     turn into something installable on the target's platform, although the name is known elsewhere, is one edit away
-    from a known one, or is that of a repository whose packages are called after it.
+    from a known one, or is that of a repository whose packages are called after it. Also reports keys of a module of
+    Python 2 where the target has Python 3, and keys that only pip resolves, in packages that have been released.
 
 Why it breaks
-    `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
+    `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package, as it
+    does where a key is not one of the platform's own packages. Python 3 does not find the modules of Python 2.
 
 Severity
     error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
     repository; warning for unknown names that nothing in the package uses or that have the form of a key (`python3-x`,
-    `libx-dev`, `x-pip`, `x_1.2`), and for a name `x` if exactly one package or key such as `x_vendor` or `libx-dev`
-    exists.
+    `libx-dev`, `x-pip`, `x_1.2`), for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev`
+    exists, for one that differs from a package of the workspace in the ending of a word, or is called after the package
+    that declares it, and for keys of Python 2 or pip.
 
 Example
     <depend>Eigen3</depend>
@@ -25,14 +28,17 @@ Not reported
     not hold on the target, and names listed in `[workspace] private` or `installed`.
 """
 
+import posixpath
 import re
 from bisect import bisect_left
+from collections.abc import Iterator
 from functools import lru_cache
 
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.target import Resolution
 from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
 from .used_names import list_used_names, shows_uses, stands_in_cmake
 
@@ -52,6 +58,18 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "`{subject}` is not a public package or rosdep key, and nothing in `{package}` uses it",
             "remove it, or correct the name",
         ),
+        "called after": Text(
+            "`{subject}` is called after `{package}` but is neither in the workspace nor a public package",
+            "remove it, correct the name, or add it to `[workspace] private` in rosimpact.toml",
+        ),
+        "python 2": Text(
+            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3",
+            "declare `{replacement}`",
+        ),
+        "pip": Text(
+            "rosdep installs `{subject}` with pip alone, so bloom cannot release `{package}` as a Debian package",
+            "declare a key that apt resolves, or treat the module as optional",
+        ),
         "build type": Text("`{subject}` is a build type, not a package or rosdep key", "declare it as build_type only"),
         "unknown": Text(
             "`{subject}` is not a public package or rosdep key",
@@ -66,15 +84,20 @@ def unresolvable_key(view: TargetView, package: Package):
         name = dependency.name
         if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
             continue
-        if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
+        if name in view.workspace.packages or target.version(name) is not None:
             continue
         if dependency.condition and not view.active_manifest(dependency.condition):
             continue
         seen.add(name)
-        if target.ever_released(name) or view.private(name):
-            continue  # unreleased-package says it
+        if view.private(name) or view.unknown_contents.is_of_submodule(name):
+            continue
         at = view.manifest_place(package, dependency)
-        if target.known_key(name):
+        resolution = target.resolve(name)
+        if resolution is not None:
+            yield from _list_unfit(view, package, at, name, resolution)
+        elif target.ever_released(name):
+            continue  # unreleased-package says it
+        elif target.known_key(name):
             if not target.has_rosdep_rules():
                 continue
             instead = next(iter(target.keys_instead(name)), "")
@@ -85,11 +108,23 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
         elif longer := _parts_of(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
-        elif relative := _find_namesake(view, name):
+        elif relative := _find_namesake(view, package, name) or _find_reworded(view, name):
             data = {"replacement": relative}
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
             yield _diagnose_unknown(view, package, at, name)
+
+
+def _list_unfit(view: TargetView, package: Package, at, name: str, found: Resolution) -> Iterator[Diagnostic]:
+    """A key that is installed, and does not serve: the module of another Python, or what no Debian package may need."""
+    target = view.target
+    if found.manager == "pip" and target.ever_released(package.name):
+        yield Diagnostic(at, name, package.name, kind="pip", doubts=(Doubt.DISTURBS,))
+    instead = name.replace("python-", "python3-", 1)
+    of_python2 = found.manager == "apt" and found.packages and all(p.startswith("python-") for p in found.packages)
+    if of_python2 and target.python_major >= 3 and target.resolve(instead) is not None and instead != name:
+        data = {"platform": target.platform, "replacement": instead}
+        yield Diagnostic(at, name, package.name, data, "python 2", (Doubt.LATE,))
 
 
 # How keys are called, and packages are not: names with dots, and those of packages of Debian or pip.
@@ -102,29 +137,59 @@ def _diagnose_unknown(view: TargetView, package: Package, at, name: str) -> Diag
         return Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
     if _KEY.fullmatch(name):
         return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.AMBIGUOUS,))
+    if name.startswith(f"{package.name}_"):
+        return Diagnostic(at, name, package.name, kind="called after", doubts=(Doubt.AMBIGUOUS,))
     hidden = package.build.unresolved or not shows_uses(package)
     if hidden or stands_in_cmake(package, name) or name in list_used_names(view, package):
         return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
     return Diagnostic(at, name, package.name, kind="unused", doubts=(Doubt.AMBIGUOUS,))
 
 
-def _find_namesake(view: TargetView, name: str) -> str:
-    """The one package or key that a library's bare name may stand for, by what those of ROS and Debian are called;
-    empty where there is none, or several."""
-    found = [f"{name}_vendor", f"ros_{name}", f"lib{name}-dev", f"python3-{name}"] if len(name) > 3 else []
+def _find_namesake(view: TargetView, package: Package, name: str) -> str:
+    """The one package or key that a library's bare name, with or without its version, may stand for, by what those of
+    ROS and Debian are called: the library for what is compiled, else the module. Empty where there is none, or
+    several."""
+    name = name.rstrip(".0123456789")
+    key = f"lib{name}-dev" if package.build.targets else f"python3-{name}"
+    found = [f"{name}_vendor", f"ros_{name}", key] if len(name) > 3 else []
     found = [known for known in found if view.available(known)]
     return found[0] if len(found) == 1 else ""
 
 
+_STEM = 5
+"""Letters that two forms of a word begin with (simulator, simulation)."""
+
+
+def _find_reworded(view: TargetView, name: str) -> str:
+    """The package of the workspace that differs from a name in the ending of one of several words alone; empty where
+    there is none, or several."""
+    words, found = name.split("_"), []
+    for other in view.workspace.packages:
+        pairs = [pair for pair in zip(words, other.split("_"), strict=False) if pair[0] != pair[1]]
+        alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
+        if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
+            found.append(other)
+    return found[0] if len(found) == 1 else ""
+
+
 def _parts_of(view: TargetView, name: str) -> list[str]:
-    """Released packages that are called after a name, two at least: what the repository of that name holds."""
+    """Released packages that are called after a name, two at least, where all are of one repository, or its name is
+    that."""
     if len(name) < 4:
         return []
     names, start = _in_order(view.target.released_names()), name + "_"
     first = bisect_left(names, start)
     # `_` is followed by a backquote.
-    found = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    alike = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    homes = {n: _plain_repository(view, n) for n in alike}
+    found = [n for n in alike if homes[n] == name] if len(set(homes.values())) > 1 else alike
     return found if len(found) > 1 else []
+
+
+def _plain_repository(view: TargetView, package: str) -> str:
+    """The name of the repository that releases a package, without what only tells the generation (`moveit2`)."""
+    repository = view.target.repository(package)
+    return re.sub(r"[-_]*(?:ros)?\d?\Z", "", repository[0]).replace("-", "_") if repository is not None else ""
 
 
 @lru_cache(maxsize=16)

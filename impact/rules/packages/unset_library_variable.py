@@ -95,9 +95,9 @@ def _list_unset(view: TargetView, package):
         known = module or (stem if view.cmake(stem) else "")
         if not known:
             continue
-        # A key that collects what no archive of the platform has (Gazebo) may bring a configuration that sets it.
-        opaque = Doubt.INCOMPLETE if view.opaque_libraries(package, stem) else True
-        doubts = (*_doubts(view, package, use.name, module, stem), opaque)
+        if view.unknown_contents.may_hold(package, stem):
+            continue
+        doubts = _doubts(view, package, use.name, module, stem)
         data = {"variable": use.name, "stem": stem}
         yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 

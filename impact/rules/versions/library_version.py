@@ -52,6 +52,7 @@ def library_version(view: TargetView, package: Package):
             doubts=(
                 found.required or Doubt.DISPENSABLE,
                 view.certain(found.conditions) or Doubt.CONDITIONAL,
+                not view.unknown_contents.is_likely(package, found.name) or Doubt.INCOMPLETE,
             ),
         )
 

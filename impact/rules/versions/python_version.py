@@ -3,15 +3,17 @@
 What it does
     Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python, as
     well as annotations that it evaluates and cannot (`list[int]`, `int | None`). On a target with Python 2 it reports
-    what the newest distro's Python 3 does not accept, and syntax of Python 3 in files whose first line names `python`.
+    what the newest distro's Python 3 does not accept, syntax of Python 3 in files whose first line names `python`, and
+    `print` with keywords in modules that do not import it from `__future__`.
     Setup files that the build runs are included, and lines that no Python accepts, except in templates.
 
 Why it breaks
     The node stops with a SyntaxError, or a TypeError for annotations, before it runs.
 
 Severity
-    error for files that are nodes, scripts or modules of the package; warning for tests, and for the first place of a
-    package that only the newest distro does not accept; note for examples and the rest of those.
+    error for files that are nodes, scripts or modules of the package; warning for tests, for modules that Python 2 most
+    likely runs, and for the first place of a package that only the newest distro does not accept; note for examples and
+    the rest of those.
 
 Example
     except urllib2.URLError, e:
@@ -28,7 +30,7 @@ from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
-from ..rule import Diagnostic, Text, doubts_of_place, rule
+from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 
 
 @rule(
@@ -40,6 +42,10 @@ from ..rule import Diagnostic, Text, doubts_of_place, rule
         "python 3": Text(
             "{subject} is a syntax error in Python 2, which runs this file",
             "start the file with `#!/usr/bin/env python3`",
+        ),
+        "print": Text(
+            "{subject} is a syntax error in Python 2, which the target's ROS uses",
+            "write `from __future__ import print_function` at the start of the file",
         ),
         "newer": Text(
             "{subject} needs Python {needs}, but the target has {version}",
@@ -64,7 +70,10 @@ def python_version(view: TargetView):
 
     yield from report_refused(view, find)
     for package in view if view.target.python_major == 2 else ():
+        others = set(package.digest.scripts) - set(package.digest.plain_scripts)  # which may be for Python 3
         for use in package.digest.syntax:
+            doubts = doubts_of_place(view, use.role)
             if use.needs not in (2, NO_PYTHON) and use.plain:
-                doubts = doubts_of_place(view, use.role)
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)
+            elif use.needs == 0 and use.what.startswith("`print`") and not others:
+                yield Diagnostic(use.at, use.what, package.name, kind="print", doubts=(*doubts, Doubt.LATE))

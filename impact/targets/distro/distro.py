@@ -305,7 +305,6 @@ class DistroTarget:
         return steps[0][0] if steps else ""
 
     def repository(self, package: str) -> tuple[str, str, str] | None:
-        """(name, source URL, branch) of the repository that releases a package here; empty texts where not known."""
         released = self._packages().get(package)
         if released is None:
             return None

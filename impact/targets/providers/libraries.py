@@ -205,8 +205,25 @@ class SystemLibraries:
         library = self._first("SELECT library FROM target WHERE name = ?", name)
         if not library:
             return None
+        return self._presence(library, platform, version_of, lambda build: _exports(build, name))
+
+    def configuration(
+        self, library: str, name: str, platform: str, version_of: Callable[[str], str | None]
+    ) -> Presence | None:
+        """The same of a CMake package of a library; None where no version has it."""
+        found = self._presence(library, platform, version_of, lambda build: name in build.cmake_names)
+        builds = (self.build(library, version, _NAMED) for version in self.versions(library).values())
+        return found if any(build is not None and name in build.cmake_names for build in builds) else None
+
+    def _presence(
+        self,
+        library: str,
+        platform: str,
+        version_of: Callable[[str], str | None],
+        has: Callable[[BuildSurface], bool | None],
+    ) -> Presence:
         versions = dict.fromkeys(self.versions(library).values())
-        told = {one: _exports(build, name) for one in versions if (build := self.build(library, one, _NAMED))}
+        told = {one: has(build) for one in versions if (build := self.build(library, one, _NAMED))}
         exact = version_of(library)
         before, after = (exact, exact) if exact in told else self.around(library, platform)
         states = {told.get(version) for version in (before, after) if version}

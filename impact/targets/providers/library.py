@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from ..distro.distro import DistroTarget
 from ..version import at_least, parts
+from .libraries import system_libraries
 
 # Boost libraries that are linked against. Source: Boost's "Getting Started", section "Header-Only Libraries".
 BOOST_COMPILED = frozenset({
@@ -141,13 +142,16 @@ _GONE = (
 
 
 def gone_component(target: DistroTarget, package: str, component: str) -> Gone | None:
-    """Whether a component of a CMake package is gone on a target, None when it is there or not known."""
+    """What a target's version of a CMake package lacks of its components, None when it is there or not known."""
     for row in _GONE:
         if row.package == package and row.component == component:
             version = target.library(row.library)
             if version and at_least(version, row.gone_in):
                 return Gone(version, row.help)
-    return None
+    # The configuration of Boost finds one for each component, `boost_json`.
+    library = _LIBRARY_OF.get(package, "")
+    found = system_libraries().configuration(library, f"{library}_{component}", target.platform, target.library)
+    return Gone(target.library(library) or found.version, "") if found is not None and found.here is False else None
 
 
 class VersionAnswer(NamedTuple):

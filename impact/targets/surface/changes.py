@@ -84,7 +84,7 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def place(self, version: str) -> int | None:
         """The version that stands for one: itself, or the newest before it that was read at its tag; None for one older
         than all."""
-        found = newest_up_to(version, (known for known in self.versions if known not in self.approximate))
+        found = newest_up_to(version, [known for known in self.versions if known not in self.approximate])
         return None if found is None else self.versions.index(found)
 
 

@@ -49,7 +49,7 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def stands_for(self, version: str) -> str | None:
         """The stored version that stands for one: itself, or the newest before it that was read at its tag; None for
         one older than all."""
-        return newest_up_to(version, self.read())
+        return newest_up_to(version, [*self.read()])
 
     def read(self) -> Iterator[str]:
         """The versions that were read at their tags, oldest first."""

@@ -1,0 +1,160 @@
+"""The one answer to "may this be there although nobody is known to have it?", for rules that state an absence.
+
+What a package uses, directly or through what it finds, may have contents that are not known completely: what its own
+build downloads or makes, folders that were not read, libraries of archives that were not read, releases whose files are
+not stored, packages whose dependencies are not known. What is looked for may come from there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from ...edges.memory import cached_method
+from .workspace import Package
+
+if TYPE_CHECKING:
+    from ..targets.target import Provider
+    from .view import TargetView
+
+# How packages of interfaces are called, and what makes interfaces and runs with them.
+INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
+_WITH_INTERFACES = (
+    "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
+)  # fmt: skip
+# How CMake finds packages whose configurations find others in turn.
+FINDING = ("find_package", "catkin", "ament_auto", "ament_lint_auto")
+_SHORTEST = 3
+"""Letters of a name by which something else is called after it."""
+_IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
+# Folders that are not called after what they hold.
+_PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
+
+
+class UnknownContents:
+    """What may be there for the packages of a workspace on one target although nobody is known to have it."""
+
+    def __init__(self, view: TargetView):
+        self._view = view
+
+    def may_hold(self, package: Package, wanted: str, providers: tuple[Provider, ...] = ()) -> bool:
+        """Whether something that a package lacks may be there all the same. wanted: a header, CMake package, target,
+        library or other package; for a variable, what it is called after. providers: who is known to have it."""
+        return (
+            self.may_come_along(package, wanted, providers)
+            or bool(self.list_opaque(package))
+            or self.is_likely(package, wanted)
+        )
+
+    def may_come_along(self, package: Package, wanted: str = "", providers: tuple[Provider, ...] = ()) -> bool:
+        """Whether something may come along by dependencies that are not known: those of a package that no index has or
+        that nobody is known to provide to CMake, of the members of a group, or of a release whose manifest is not
+        known. Packages called as those of interfaces are bring only others of them, and what they run with."""
+        unknown = self._unknown_along(package)
+        if wanted and not INTERFACES.search(wanted) and wanted not in self._with_interfaces:
+            unknown = tuple(name for name in unknown if not INTERFACES.search(name))
+        grouped = any(dependency.kind == "group" for dependency in package.manifest.dependencies)
+        if grouped or any(name != wanted for name in unknown):
+            return True
+        return bool(providers) and self._view.answered(providers, self._view.may_bring(package))
+
+    def is_likely(self, package: Package, wanted: str) -> bool:
+        """Whether something wanted is most likely there, since something of unknown contents is called after it: made
+        apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
+        ROS carries (`mrpt2`, `sdformat_vendor`)."""
+        stem = re.split(r"[^a-z]", wanted.lower())[0]
+        return self.is_made_apart(package, wanted) or (
+            len(stem) >= _SHORTEST
+            and any(stem in name and self.is_carried_library(name) for name in self._view.closure(package))
+        )
+
+    def is_made_apart(self, package: Package, wanted: str) -> bool:
+        """Whether something, or its folder, is called after what the build of a package downloads, or after a folder
+        that was not read, such as a submodule."""
+        made = self._made_apart(package)
+        return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
+
+    def is_of_submodule(self, name: str) -> bool:
+        """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""
+        folders = (folder.replace("-", "_") for folder in self._view.workspace.unread_names)
+        return any(len(folder) >= _SHORTEST and name.startswith(folder) for folder in folders)
+
+    def list_opaque(self, package: Package) -> tuple[str, ...]:
+        """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
+        (Gazebo and its metapackages come from their own): they may bring any system library."""
+        return self._opaque_along(self._view.closure(package))
+
+    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Those of the names whose dependencies are not known anywhere."""
+        view, target = self._view, self._view.target
+        return tuple(
+            n for n in names
+            if n not in view.workspace.packages and n not in view.preinstalled and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
+            and target.dependencies(n) is None and target.similar_dependencies(n) is None
+            and not target.other_generation(n)  # nor does a package that cannot be had
+        )  # fmt: skip
+
+    @cached_method
+    def list_unknown_found(self, package: Package) -> tuple[str, ...]:
+        """What CMake finds and nobody is known to provide, so that it may find anything else in turn."""
+        view, modules = self._view, self._view.workspace.find_modules
+        found = {f.name for f in package.build.found if f.how in FINDING and view.active(f.conditions)}
+        return tuple(name for name in found if "$" not in name and name not in modules and not view.cmake(name))
+
+    @cached_method
+    def _unknown_along(self, package: Package) -> tuple[str, ...]:
+        return (*self.list_unknown(self._view.closure(package)), *self.list_unknown_found(package))
+
+    @cached_property
+    def _with_interfaces(self) -> frozenset[str]:
+        return self._view.spread(_WITH_INTERFACES)
+
+    @cached_method
+    def _made_apart(self, package: Package) -> tuple[str, ...]:
+        """How names begin of what a package downloads, and of its folders that were not read. A download is called
+        after its project, or one of the folders that it fills in the build is."""
+        workspace, build = self._view.workspace, package.build
+        folder = f"{package.path}/" if package.path else ""
+        unread = {path for path in workspace.unread if path.startswith(folder)}
+        downloads = [target.name for target in build.targets if target.kind in ("external", "fetched")]
+        given = (*build.links, *(link for target in build.targets for link in target.links))
+        searched = {one for one, _ in build.include_dirs}.union(link.item for link in given)
+        unread.update(one for one in searched if unread and "$" not in one and workspace.is_unread(one))
+        filled = [one for one in searched if downloads and _IN_BUILD.match(one)]
+        names = {part for path in (*unread, *filled) for part in path.removeprefix(folder).split("/")}
+        names.update(downloads, *(re.split(r"[-_]", name) for name in downloads))
+        first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - _PLAIN_FOLDERS)
+        return tuple({one.group() for one in first if one and len(one.group()) >= _SHORTEST})
+
+    @cached_method
+    def _opaque_along(self, names: frozenset[str]) -> tuple[str, ...]:
+        return tuple(n for n in names if n not in self._view.workspace.packages and self._is_opaque(n))
+
+    @cached_method
+    def _is_opaque(self, name: str) -> bool:
+        bringing = [] if name.startswith("python") else list(self._list_bringing(name))
+        return bool(bringing) and (
+            name.startswith("gazebo") or not self._view.providers.knows_system([name, *bringing])
+        )
+
+    def _list_bringing(self, key: str) -> Iterator[str]:
+        """The packages of a key that may bring libraries: those for development, Gazebo's, and collections of no
+        archive that was read."""
+        for debian in self._view.debian(key):
+            collects = not debian.startswith("lib") and not self._view.apt.knows(debian)
+            if collects or debian.endswith("-dev") or debian.startswith("gazebo"):
+                yield debian
+
+    @cached_method
+    def is_carried_library(self, name: str) -> bool:
+        """Whether a package that is not of the workspace is another project's library, whose installed files are not
+        all stored: built with plain CMake or Meson, or a package that carries it."""
+        view = self._view
+        if name in view.workspace.packages:
+            return False
+        types = {one.partition(":")[0] for one in view.target.build_type(name).split(";")}
+        plain = view.target.version(name) is not None and not types.isdisjoint(("cmake", "meson"))
+        return plain or name.endswith("_vendor")

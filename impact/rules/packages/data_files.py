@@ -1,0 +1,33 @@
+"""What the data_files of ament_python packages install, as the rules on them ask for it."""
+
+import posixpath
+from typing import NamedTuple
+
+from ...model.workspace import Package
+
+
+class DataFiles(NamedTuple):
+    """The data_files of a package. setup: the path of setup.py. files: (folder of the prefix, path as written)."""
+
+    setup: str
+    files: tuple[tuple[str, str], ...]
+
+    def find_in(self, folder: str) -> list[str]:
+        """The paths of what is installed into a folder of the prefix."""
+        return [path for destination, path in self.files if destination == folder]
+
+
+def read_data_files(package: Package) -> DataFiles | None:
+    """The data_files of an ament_python package; None where not all of them can be told, or where it installs nothing
+    at all."""
+    own = [(path, setup) for path, setup in package.digest.setup if posixpath.dirname(path) == package.path]
+    code = next((path for path, _ in own if posixpath.basename(path) == "setup.py"), None)
+    if package.build_type != "ament_python" or code is None:
+        return None
+    if any(setup.problems or any("data_files" in clause or "arguments" in clause for clause in setup.unresolved)
+           for _, setup in own):  # fmt: skip
+        return None
+    files = tuple((posixpath.normpath(place), path) for _, setup in own for place, path, _ in setup.data_files)
+    if not files and not any(setup.entry_points or setup.packages for _, setup in own):
+        return None
+    return DataFiles(code, files)
