@@ -1121,16 +1121,11 @@ SILENT = {
 }
 
 
-@pytest.fixture(scope="module")
-def store(tmp_path_factory) -> Path:
-    return tmp_path_factory.mktemp("cache")
-
-
 @pytest.mark.parametrize("row", SILENT.values(), ids=SILENT)
-def test_what_is_left_alone(row: Silent, store: Path):
+def test_what_is_left_alone(row: Silent, cache: Path):
     def reports(files: Files) -> bool:
         """Whether the rule reports something, for most rules above a note."""
-        options = Options(targets=row.targets, preview=True, cache=store, select=(row.rule,))
+        options = Options(targets=row.targets, preview=True, cache=cache, select=(row.rule,))
         quiet = () if all_rules()[row.rule].severity == "note" else ("note",)
         return any(finding.severity not in quiet for finding in rule_cases.check_files(files, options).findings)
 
@@ -1141,26 +1136,26 @@ def test_what_is_left_alone(row: Silent, store: Path):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_where_nothing_changed_nothing_is_new(case: Case, store: Path):
-    report = rule_cases.check_files(case.files, Options(targets=case.targets, preview=True, cache=store), case.files)
+def test_where_nothing_changed_nothing_is_new(case: Case, cache: Path):
+    report = rule_cases.check_files(case.files, Options(targets=case.targets, preview=True, cache=cache), case.files)
     comparing = rule_cases.rules_that_compare()
     assert [f for f in report.findings if f.new or f.rule in comparing] == []
 
 
-def test_a_commit_without_changes_does_not_fail(tmp_path: Path, store: Path):
+def test_a_commit_without_changes_does_not_fail(tmp_path: Path, cache: Path):
     for name, text in SILENT["a header chosen by a version"].files.items():
         (tmp_path / name).write_text(text.replace("#if RCLCPP_VERSION_GTE(28, 0, 0)", "#if 0"))
     git = ["git", "-C", str(tmp_path), "-c", "user.name=r", "-c", "user.email=r@example.org"]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "first"]):
         subprocess.run([*git, *command], check=True)
     command = ["check", str(tmp_path), "--target", "jazzy", "--quiet"]
-    environment = {"ROSIMPACT_CACHE": str(store)}
+    environment = {"ROSIMPACT_CACHE": str(cache)}
     assert CliRunner().invoke(app, command, env=environment).exit_code == 1
     assert CliRunner().invoke(app, [*command, "--base", "HEAD"], env=environment).exit_code == 0
 
 
 @pytest.mark.parametrize(("module", "severity"), [("distutils.version", "warning"), ("imp", "error")])
-def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
+def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path, cache):
     files = ament(
         "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
         "exec_depend:rclpy",
@@ -1168,7 +1163,7 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     )
     for name, text in files.items():
         (tmp_path / name).write_text(text)
-    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    report = check(tmp_path, Options(targets=("jazzy",), cache=cache, jobs=1))
     found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
     assert found == [(severity, module)]
 

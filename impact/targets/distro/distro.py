@@ -87,6 +87,17 @@ def _read_released(data: Snapshot, distro: int, cut: int) -> Mapping[str, _Relea
     return found
 
 
+@functools.lru_cache(maxsize=20_000)
+def _read_entries(entries: str) -> tuple[tuple[str, ReleasedDependency], ...]:
+    """What a stored manifest declares, each with its condition; few of them differ between distros."""
+    found = []
+    for line in entries.splitlines():
+        name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
+        pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
+        found.extend((condition, ReleasedDependency(name, KINDS[letter], pairs)) for letter in letters)
+    return tuple(found)
+
+
 class DistroTarget:
     """A target: what another developer or a robot has. A distro at a date, with overrides.
 
@@ -330,14 +341,7 @@ class DistroTarget:
         manifest = self._manifest(package)
         if manifest is None:
             return None
-        found = []
-        for line in manifest[0].splitlines():
-            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
-            if condition and not self.holds(condition):
-                continue
-            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
-            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
-        return tuple(found)
+        return tuple(found for condition, found in _read_entries(manifest[0]) if not condition or self.holds(condition))
 
     def _manifest(self, package: str) -> tuple[str, str] | None:
         version = self.version(package)
