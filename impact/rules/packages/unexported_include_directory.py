@@ -131,6 +131,8 @@ def _list_without_library(view: TargetView, package: Package, exports: list[CMak
     if any(e.how in _OFFERS or "$" in e.item for e in exports):
         return
     catkin = package.build.catkin_package is not None
+    if catkin and package.name in view.workspace.includers:
+        return  # unexported-header looks at those who include them
     public = [p for p, _ in package.digest.source_targets if p.startswith(folders)] if catkin else ()
     offered = frozenset(public or package.digest.public_headers)
     linked = {link.item for target in package.build.targets for link in target.links}
