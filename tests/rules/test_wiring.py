@@ -343,7 +343,12 @@ ROWS = {
         "humble",
         {
             **ament("sled", HEADERS, include__sled__sled_hpp="#pragma once\n"),
-            **ament("dogs", "add_executable(run run.cpp)", "sled", run_cpp="#include <sled/sled.hpp>\n" + MAIN),
+            **ament(
+                "dogs",
+                "add_executable(run run.cpp)\ninstall(TARGETS run DESTINATION lib/dogs)",
+                "sled",
+                run_cpp="#include <sled/sled.hpp>\n" + MAIN,
+            ),
         },
         ("sled/CMakeLists.txt", "DIRECTORY include/ ", "DIRECTORY include "),
         ("error", "include"),
