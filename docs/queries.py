@@ -45,6 +45,7 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 | what a package uses of others, with who provides it | `view.needs(package)` |
 | which ROS, which distro, which version of a package or library | `view.target` |
 | whether something outside of the workspace is there | `view.availability(symbol)` |
+| whether something that nobody is known to have may be there all the same | `view.unknown_contents.may_hold(...)` |
 | what CMake finds along with packages, and what a package has at hand in a role | `view.roles` |
 | what targets link, pass on and are given by name | `model/cmake/links.py` |
 | which C++ standard targets are compiled under | `find_standards(view, package)` of `model/standards.py` |

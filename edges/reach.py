@@ -3,7 +3,10 @@ cost next to nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from typing import TypeVar
+
+Name = TypeVar("Name", bound=Hashable)
 
 # The names that a name leads to, and names that come along with it and lead nowhere.
 _Look = Callable[[str], tuple[Iterable[str], Iterable[str]]]
@@ -97,3 +100,15 @@ class _Step:
 
     def __init__(self, name: str, leads: Iterator[str], reached: int, along: int):
         self.name, self.leads, self.reached, self.along = name, leads, reached, along
+
+
+def walk(start: Iterable[Name], leads: Callable[[Name], Iterable[Name]]) -> Iterator[Name]:
+    """Everything that can be reached, each once, the start included. leads: where a thing leads to."""
+    waiting = list(start)
+    seen: set[Name] = set()
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen.add(name)
+            yield name
+            waiting.extend(leads(name))

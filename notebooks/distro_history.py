@@ -221,11 +221,19 @@ class History:
         """Package to version, of all that is released on a day."""
         cut = self.cut(day)
         found = {}
-        for package, steps in self._steps.items():
-            version = _at(steps, cut)
+        for package, (times, versions) in self._turns.items():
+            version = versions[bisect.bisect_right(times, cut)]
             if version is not None:
                 found[package] = version
         return found
+
+    @functools.cached_property
+    def _turns(self) -> dict[str, tuple[list[int], list[str | None]]]:
+        """Of each package the moments at which its version changed, and its versions before, between and after them."""
+        return {
+            package: ([ts for ts, _ in steps], [None, *(version for _, version in steps)])
+            for package, steps in self._steps.items()
+        }
 
     def table(self, days: Sequence[str]) -> tuple[NDArray[np.int32], tuple[str, ...]]:
         """Which version each package (column, as in `packages`) has on each day (row): places in the second value."""
@@ -288,17 +296,18 @@ class History:
             "ROS_DISTRO": self.distro,
             "ROS_PYTHON_VERSION": str(self.known.python),
         }
-        declared = {
-            key: _names_that_come_along(entries or "", variables)
-            for key, entries in self._data.rows("SELECT id, entries FROM dependencies")
-        }
+
+        @functools.cache
+        def come_along(entries: str) -> tuple[str, ...]:
+            return _names_that_come_along(entries, variables)
+
         found: dict[str, list[tuple[list[int], tuple[str, ...]]]] = {}
-        for package, version, key in self._data.rows(
-            "SELECT p.name, m.version, m.dependencies FROM manifest m JOIN package p ON p.id = m.package"
-            " JOIN distro d ON d.id = m.distro WHERE d.name = ?",
+        for package, version, entries in self._data.rows(
+            "SELECT p.name, m.version, s.entries FROM manifest m JOIN package p ON p.id = m.package"
+            " JOIN distro d ON d.id = m.distro LEFT JOIN dependencies s ON s.id = m.dependencies WHERE d.name = ?",
             (self.borrows or self.distro,),
         ):
-            found.setdefault(package, []).append((version_key(version), declared.get(key, ())))
+            found.setdefault(package, []).append((version_key(version), come_along(entries or "")))
         for rows in found.values():
             rows.sort(key=lambda row: row[0])
         return found
@@ -500,11 +509,6 @@ def _names_that_come_along(entries: str, variables: dict[str, str]) -> tuple[str
         if _COMES_ALONG.intersection(letters) and (not condition or condition_holds(condition, variables)):
             found.append(name)
     return tuple(found)
-
-
-def _at(steps: list[tuple[int, str | None]], ts: int) -> str | None:
-    place = bisect.bisect_right(steps, ts, key=lambda step: step[0])
-    return steps[place - 1][1] if place else None
 
 
 def _days_between(first: str, last: str) -> int:

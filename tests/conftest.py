@@ -164,9 +164,13 @@ def opened(browser, tmp_path):
 
 
 @pytest.fixture(scope="session")
-def cache(tmp_path_factory) -> Path:
-    """A cache folder that tests share, so that the data is unpacked once."""
-    return tmp_path_factory.mktemp("cache")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cache folder that tests share, those of other processes too, so that the data is unpacked once and what depends
+    on a target alone is worked out once."""
+    place = tmp_path_factory.getbasetemp()
+    folder = (place.parent if "PYTEST_XDIST_WORKER" in os.environ else place) / "cache"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @pytest.fixture

@@ -24,16 +24,16 @@ class Graphs(NamedTuple):
 def graphs(
     path: Path, *, rev: str = "", base: Sequence[str] = (), launch: str = "",
     arguments: Mapping[str, str] | None = None, jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None, cache: Path | None = None, follow_links: bool = False,
+    progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
 ) -> Graphs:  # fmt: skip
     """The message-flow graph of the workspace at a path.
 
-    rev, base, jobs, cache, follow_links: as for check. launch: a launch file, as a path or relative to the workspace's
+    rev, base, jobs, follow_links: as for check. launch: a launch file, as a path or relative to the workspace's
     root: then only what it starts, under the names it gives; arguments: those of the launch file. Raises CheckError,
     TreeError and BaseError with a text for the user.
     """
     tree = open_tree(path, rev, follow_links=follow_links)
-    with Store(cache) as store:
+    with Store() as store:
         file = _launch_file(path, tree, launch) if launch else ""
         workspace = link_flow(path, tree, store, jobs, progress)
         now = graph_of(workspace, store, os.fspath(path), rev, file, arguments)

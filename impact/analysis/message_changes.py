@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ...edges.reach import walk
 from ..facts.interface import Section
 from ..model.workspace import Workspace
 from ..rules.interfaces.comparison import SectionPair, pairs, type_of
@@ -52,13 +53,7 @@ def holding(workspace: Workspace, name: str) -> set[str]:
                     parts = field.type.split("/")
                     full = f"{parts[0]}/{parts[-1]}" if len(parts) > 1 else f"{package.name}/{parts[0]}"
                     inside.setdefault(full, set()).add(f"{package.name}/{file.name}")
-    found = {name}
-    todo = [name]
-    while todo:
-        fresh = inside.get(todo.pop(), set()) - found
-        found |= fresh
-        todo.extend(fresh)
-    return found
+    return set(walk([name], lambda one: inside.get(one, ())))
 
 
 def _differences(pair: SectionPair) -> Iterator[tuple[int, str]]:

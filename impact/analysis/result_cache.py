@@ -24,10 +24,11 @@ from ..rules.rule import Diagnostic
 from ..source_keys import code_stamp
 from ..targets.availability import horizons
 from ..targets.changes import looked_for
+from ..targets.distro.distro import DistroTarget
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
-from ..targets.target import ChangeInForce, Target
+from ..targets.target import ChangeInForce
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic]
@@ -116,9 +117,7 @@ def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded])
     _keep(store, key, diagnostics, {})
 
 
-def _keep(
-    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
-) -> None:
+def _keep(store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]) -> None:
     stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
 
@@ -135,7 +134,7 @@ def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[
         return None
 
 
-def load_changes(store: Store, target: Target) -> None:
+def load_changes(store: Store, target: DistroTarget) -> None:
     """Gives a target, and what it is going to be, the changes an earlier run worked out."""
     for one in (target, *(ahead.target for ahead in horizons(target))):
         if one.has_changes():

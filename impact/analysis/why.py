@@ -10,7 +10,6 @@ from typing import NamedTuple
 from ...edges.console import counted, visible
 from ..model.view import TargetView
 from ..rules.rule import Finding
-from ..targets.distro.distro import DistroTarget
 from ..tree import JoinedTree
 from .check_opened import check_opened
 from .session import Options, open_workspace
@@ -142,7 +141,7 @@ def _offer(view: TargetView, name: str, package: str) -> NameOffer:
         return NameOffer("workspace", name, here.manifest.version, "", here.path)
     version = target.version(name)
     if version is not None:
-        return NameOffer("package", name, version, target.since(name) if isinstance(target, DistroTarget) else "", "")
+        return NameOffer("package", name, version, target.since(name), "")
     resolution = target.resolve(name)
     if resolution is not None:
         libraries = [

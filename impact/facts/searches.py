@@ -69,12 +69,14 @@ def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
 class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. spaces: namespaces.
     tf2: words in namespace tf2, or in a special form of a template. functions: of classes and namespaces that it
-    defines outside of them, `Class::function`."""
+    defines outside of them, `Class::function`, and those that it defines at the start of a line, `::function`. called:
+    what is called without a receiver, and short names that are called on one, `.function`."""
 
     types: frozenset[str] = frozenset()
     spaces: frozenset[str] = frozenset()
     tf2: frozenset[str] = frozenset()
     functions: frozenset[str] = frozenset()
+    called: frozenset[str] = frozenset()
     problems: tuple[Problem, ...] = ()
 
 
@@ -89,8 +91,12 @@ _SPACE = re.compile(rb"namespace\s+(\w+)")
 _OF_TF2 = (re.compile(rb"namespace\s+tf2\s*\{.*", re.DOTALL), re.compile(rb"template\s*<\s*>[^;{}]*"))
 _WORD = re.compile(rb"\w+")
 # An expression that starts with a literal is found at the speed of one; what stands before it is looked at after.
-_FUNCTION = re.compile(rb"(::(?<=\w::)[A-Za-z]\w{3,100})\s?(\([^;{}]{0,1000})\{")
+_FUNCTION = re.compile(rb"(::(?<=\w::)[A-Za-z]\w{2,100})\s?(\([^;{}]{0,1000})\{")
 _SCOPE = re.compile(rb"\w+\Z")
+_FREE = re.compile(rb"^(?!static|inline|template|else|return|typedef|using|extern)[a-zA-Z][\w:<>,]{0,100}[ \n*&]{1,4}"
+                   rb"([A-Za-z]\w{3,100}) ?(\([^;{}]{0,1000})\{", re.MULTILINE)  # fmt: skip
+_CALLED = re.compile(rb"(?<![\w.>])(?:\w{1,50}::){0,3}([A-Za-z]\w{3,100}) ?\(")
+_CALLED_ON = re.compile(rb"[.>]([A-Za-z]\w{2}) ?\(")
 _AFTER_PARAMETERS = re.compile(rb"\s*(?:\Z|[a-z/&]|:(?!:)|->)")
 
 
@@ -100,7 +106,8 @@ def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
         _decoded({*_types(data), *_MESSAGE.findall(data)}),
         _decoded(_SPACE.findall(data)),
         _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
-        _decoded(_functions(data)),
+        _decoded((*_functions(data), *_free_functions(data))),
+        _decoded((*_CALLED.findall(data), *(b"." + name for name in _CALLED_ON.findall(data)))),
     )
 
 
@@ -109,6 +116,10 @@ def _functions(data: bytes) -> Iterator[bytes]:
         if _is_head(found[2]):
             scope = _SCOPE.search(data, max(0, found.start() - 100), found.start())
             yield (scope[0] if scope is not None else b"") + found[1]
+
+
+def _free_functions(data: bytes) -> Iterator[bytes]:
+    return (b"::" + found[1] for found in _FREE.finditer(data) if _is_head(found[2]))
 
 
 def _is_head(text: bytes) -> bool:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...edges.memory import cached_method
+from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
@@ -61,6 +62,13 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _PLAIN_PYTHON = re.compile(r"#!\s*/\S*\bpython\b(?![\d.])|#!\s*/usr/bin/env\s+python(?!\S)")
+
+
+def _is_part(facts: PythonFile) -> bool:
+    """Whether a Python file cannot be started itself, since it imports relative to its package."""
+    return any(item.level and not item.lazy for item in facts.imports)
+
+
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -70,7 +78,8 @@ _SOURCES = 6
 
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
-    targets: CMake targets that compile it."""
+    targets: CMake targets that compile it. idle: no file of the package names anything of the namespace, or a macro,
+    that its first folder is called after."""
 
     path: str
     at: At
@@ -78,6 +87,7 @@ class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     public: bool
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
+    idle: bool = False
 
 
 class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -209,7 +219,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter. plain_scripts: those
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter, and that import
+    nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter.
     """
@@ -303,14 +314,15 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
 
 
 def role_of_folder(path: str) -> str | None:
-    """`test` or `aside` when a folder of the path says so, else None. path is relative to the package."""
+    """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
+    is relative to the package."""
     parts = path.lower().split("/")[:-1]
     if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
         return "test"
     name = path.rsplit("/", 1)[-1].lower()
     if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
         return "test"
-    if any(part in ASIDE for part in parts) or _ASIDE_NAME.search(name):
+    if any(part in ASIDE or part[:1] == "." for part in parts) or _ASIDE_NAME.search(name):
         return "aside"
     return None
 
@@ -443,6 +455,8 @@ class _Join:
     def digest(self) -> LinkedPackage:
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        # Files whose references nobody follows where the package is used.
+        unused = set(self.files) if of_tests else set()
         python: dict[str, PythonFile] = {}
         interpreted = self.interpreted
         shells: list[str] = []
@@ -490,6 +504,8 @@ class _Join:
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
+                    if getattr(facts, "generation", 0) == 1 and self.build_type.startswith("ament"):
+                        unused.add(path)  # left over: the launch system of ROS 2 refuses it
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         if self.build_type == "catkin":  # which starts programs from the source space too
@@ -524,7 +540,7 @@ class _Join:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if of_tests else "run"))
+                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if p in unused else "run"))
                 for p, r in references
             ),
             names=tuple(names + python_names),
@@ -550,8 +566,10 @@ class _Join:
             problems=tuple(problems),
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
-            scripts=tuple(p for p, f in python.items() if f.interpreter),
-            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter)),
+            scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
+            plain_scripts=tuple(
+                p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)
+            ),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
@@ -570,7 +588,7 @@ class _Join:
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),
-                    *list_unlisted(python, ((p, f) for p, f in setup if p in run_setup)),
+                    *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
             python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
@@ -667,17 +685,19 @@ class _Join:
         """As LinkedPackage.own_calls."""
         from .cpp.own_calls import list_own_calls
 
-        compiled = {path: role[2] for path, role in roles.items() if role[2] and not is_header(path)}
-        if len(set(compiled.values())) < 2:
+        targets = {path: role[2] for path, role in roles.items() if role[2]}
+        sources = {path: targets.get(path, ()) for path in self.cpp if not is_header(path)}
+        if len(set(sources.values())) < 2:
             return
 
         def included(path: str) -> Collection[str]:
-            return {to for to, _ in self.resolved.get(path, ()) if to is not None}
+            # What nothing compiles may belong to something that is not built here.
+            return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        def defined(paths: Collection[str]) -> Mapping[str, Collection[str]]:
-            return {path: one.functions for path, one in zip(paths, self.declared(paths), strict=True)}
+        def declared(paths: Collection[str]) -> Mapping[str, DeclaredCpp]:
+            return dict(zip(paths, self.declared(paths), strict=True))
 
-        yield from list_own_calls(compiled, included, self.spoken, defined)
+        yield from list_own_calls(sources, included, self.spoken, declared)
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
@@ -707,7 +727,8 @@ class _Join:
                 if to is None:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
-                                   conditions + self.macros.asked(include.conditions, targets), targets)
+                                   conditions + self.macros.asked(include.conditions, targets), targets,
+                                   self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
             reach, types = None, set()
             for name in facts.qualified:
@@ -740,6 +761,19 @@ class _Join:
                     if not any(h in reach for h in headers):
                         needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
+
+    @cached_property
+    def spaces(self) -> frozenset[str]:
+        """First parts of the qualified names and namespaces in C++ files."""
+        names = {name.text for facts in self.cpp.values() for name in facts.qualified}
+        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.types))
+        return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
+
+    @cached_method
+    def is_idle(self, space: str) -> bool:
+        """Whether no C++ file names anything of a namespace, or a macro that is called after it."""
+        macro = f"{space.upper()}_"
+        return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
     def defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
@@ -1061,13 +1095,7 @@ class _Join:
 
     def reached(self, path: str) -> list[str]:
         """The file and the files of the package that it includes, directly or not."""
-        stack, seen = [path], {}
-        while stack:
-            at = stack.pop()
-            if at not in seen:
-                seen[at] = None
-                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
-        return list(seen)
+        return list(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this

@@ -8,10 +8,11 @@ that happens to need it drops it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ...edges.memory import cached_method
+from ...edges.reach import walk
 
 if TYPE_CHECKING:
     from .view import TargetView
@@ -66,7 +67,7 @@ class Roles:
         export counts as well as what its CMake does."""
         declared = self._view.declared(package)
         start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-        return _reached(start, self._either if promised else self._by_cmake)
+        return frozenset(walk(start, self._either if promised else self._by_cmake))
 
     def _either(self, name: str) -> tuple[str, ...]:
         return (*self.exports(name), *self.promises(name))
@@ -81,7 +82,7 @@ class Roles:
     def has_build_tool(self, package: Package, tool: str) -> bool:
         """Whether a package declares a tool of its own build, or a tool that exports it."""
         declared = self._view.declared(package)
-        return tool in _reached((n for n, kinds in declared.items() if "buildtool" in kinds or n == tool), self.tools)
+        return tool in walk((n for n, kinds in declared.items() if "buildtool" in kinds or n == tool), self.tools)
 
     def comes_with_launch(self, name: str, path: str) -> bool:
         """Whether whoever starts launch files has a package: all that comes along with the command that does, for the
@@ -179,14 +180,3 @@ class Roles:
             return [(n, kind) for n, kinds in view.declared(own).items() for kind in kinds]
         released = view.target.dependencies(name) or view.target.similar_dependencies(name) or ()
         return [(d.name, d.kind) for d in released]
-
-
-def _reached(start: Iterable[str], step: Callable[[str], Iterable[str]]) -> frozenset[str]:
-    found = set(start)
-    waiting = list(found)
-    while waiting:
-        for other in step(waiting.pop()):
-            if other not in found:
-                found.add(other)
-                waiting.append(other)
-    return frozenset(found)

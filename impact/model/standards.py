@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 
 from ..targets.providers.library import default_standard, standard_year
 from ..targets.version import at_least
-from .cmake.links import package_of
+from .cmake.links import package_of, reached_targets
 
 if TYPE_CHECKING:
     from .package import NameUse
     from .view import TargetView
     from .workspace import Package
+
+
+_PASSING_ON = ("link", "ament", "interfaces")
 
 
 def find_standards(view: TargetView, package: Package) -> dict[str, int]:
@@ -21,20 +24,12 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
     targets = {target.name: target for target in package.build.targets}
     found: dict[str, int] = {}
     for target in targets.values():
-        year, waiting, seen = standard_year(target.standard) if target.standard else 0, [target.name], set()
+        year = standard_year(target.standard) if target.standard else 0
         others: set[str] = set()
-        while waiting:
-            own = targets.get(waiting.pop())
-            if own is None or own.name in seen:
-                continue
-            seen.add(own.name)
+        for own in reached_targets(targets, [target.name], _PASSING_ON):
             if own.public_standard:
                 year = max(year, standard_year(own.public_standard))
-            waiting.extend([own.alias_of] if own.alias_of else [])
-            for link in own.links:
-                if link.how in ("link", "ament", "interfaces"):
-                    waiting.append(link.item)
-                    others.add(package_of(link.item))
+            others.update(package_of(link.item) for link in own.links if link.how in _PASSING_ON)
         if "catkin" in others:
             others.update(f.name for f in package.build.found if f.how == "catkin")
         for name in view.roles.found_with(others - targets.keys()) if others else ():

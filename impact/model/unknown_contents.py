@@ -45,13 +45,14 @@ class UnknownContents:
         return (
             self.may_come_along(package, wanted, providers)
             or bool(self.list_opaque(package))
+            or any(name != wanted for name in self.list_unknown_found(package))
             or self.is_likely(package, wanted)
         )
 
     def may_come_along(self, package: Package, wanted: str = "", providers: tuple[Provider, ...] = ()) -> bool:
-        """Whether something may come along by dependencies that are not known: those of a package that no index has or
-        that nobody is known to provide to CMake, of the members of a group, or of a release whose manifest is not
-        known. Packages called as those of interfaces are bring only others of them, and what they run with."""
+        """Whether something may come along by dependencies that are not known: those of a package that no index has, of
+        the members of a group, or of a release whose manifest is not known. Packages that are called as those of
+        interfaces are bring only others of them, and what they run with."""
         unknown = self._unknown_along(package)
         if wanted and not INTERFACES.search(wanted) and wanted not in self._with_interfaces:
             unknown = tuple(name for name in unknown if not INTERFACES.search(name))
@@ -67,7 +68,7 @@ class UnknownContents:
         stem = re.split(r"[^a-z]", wanted.lower())[0]
         return self.is_made_apart(package, wanted) or (
             len(stem) >= _SHORTEST
-            and any(stem in name and self._is_carried_library(name) for name in self._view.closure(package))
+            and any(stem in name and self.is_carried_library(name) for name in self._view.closure(package))
         )
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
@@ -75,6 +76,11 @@ class UnknownContents:
         that was not read, such as a submodule."""
         made = self._made_apart(package)
         return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
+
+    def is_of_submodule(self, name: str) -> bool:
+        """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""
+        folders = (folder.replace("-", "_") for folder in self._view.workspace.unread_names)
+        return any(len(folder) >= _SHORTEST and name.startswith(folder) for folder in folders)
 
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
@@ -101,7 +107,7 @@ class UnknownContents:
 
     @cached_method
     def _unknown_along(self, package: Package) -> tuple[str, ...]:
-        return (*self.list_unknown(self._view.closure(package)), *self.list_unknown_found(package))
+        return self.list_unknown(self._view.closure(package))
 
     @cached_property
     def _with_interfaces(self) -> frozenset[str]:
@@ -144,7 +150,7 @@ class UnknownContents:
                 yield debian
 
     @cached_method
-    def _is_carried_library(self, name: str) -> bool:
+    def is_carried_library(self, name: str) -> bool:
         """Whether a package that is not of the workspace is another project's library, whose installed files are not
         all stored: built with plain CMake or Meson, or a package that carries it."""
         view = self._view

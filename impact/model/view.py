@@ -13,13 +13,14 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cached_method
-from ...edges.reach import Reach
+from ...edges.reach import Reach, walk
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, ChangeRow
+from ..targets.distro.distro import DistroTarget
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
@@ -29,7 +30,7 @@ from ..targets.providers.library import default_standard, include_roots, standar
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
-from ..targets.target import ChangeInForce, Provider, Target
+from ..targets.target import ChangeInForce, Provider
 from ..targets.version import at_least
 from .cmake.build import At, FoundPackage, for_tests
 from .misspelling import SpellingIndex
@@ -101,7 +102,7 @@ class TargetView:
     def __init__(
         self,
         workspace: Workspace,
-        target: Target,
+        target: DistroTarget,
         providers,
         config: Config = _UNCONFIGURED,
         asked: frozenset[str] = frozenset(),
@@ -160,13 +161,13 @@ class TargetView:
             gone=lambda kind, name: self._is_gone(kind, name, target),
         )
 
-    def _has_package(self, name: str, target: Target) -> bool | None:
+    def _has_package(self, name: str, target: DistroTarget) -> bool | None:
         """Whether a package is there, on a target or in the workspace; None for names that no package ever had."""
         if name in self.workspace.packages or target.version(name) is not None:
             return True
         return False if target.ever_released(name) else None
 
-    def _is_gone(self, kind: str, name: str, target: Target) -> bool:
+    def _is_gone(self, kind: str, name: str, target: DistroTarget) -> bool:
         """Whether known changes tell that a target has a package, or a command of CMake, no longer."""
         kinds = ("cmake-removed", "cmake-renamed") if kind == "command" else ("package-removed", "package-renamed")
         if kind == "package" and (self._has_package(name, target) or target.resolve(name) is not None):
@@ -271,13 +272,13 @@ class TargetView:
     @cached_property
     def own_modules(self) -> frozenset[str]:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
-        found = {name.removesuffix("_py") for name in self.workspace.packages} | set(self.workspace.packages)
+        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
         for package in self.workspace:
             found |= python_packages(package.digest.files)
         return frozenset(found)
 
     @cached_property
-    def newest(self) -> Target | None:
+    def newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation; None when this target is it or newer, or when it is asked for
         itself, so that its own view tells of it."""
         newest = self.target.newest()
@@ -440,7 +441,7 @@ class TargetView:
             p.kind == "system" for p in self.header(path)
         ):
             return Availability(symbol, "removed", target.platform, form="platform")
-        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
+        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
@@ -522,7 +523,7 @@ class TargetView:
 
     def availability(self, symbol: Symbol) -> Availability:
         """How the target stands to something outside the workspace; what the workspace brings itself is there."""
-        if any(package in self.workspace.packages for package in symbol.packages):
+        if not self.workspace.may_have.isdisjoint(symbol.packages):
             return Availability(symbol, "present")
         return self.availabilities.on_horizon(symbol)
 
@@ -560,7 +561,7 @@ class TargetView:
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
 
     @cached_method
-    def _environment_on(self, target: Target) -> Environment:
+    def _environment_on(self, target: DistroTarget) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
 
@@ -581,7 +582,7 @@ class TargetView:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
-        if head in self.workspace.packages:
+        if head in self.workspace.may_have:
             return False
         if path.endswith(".py") or change.kind.startswith("python"):
             return True
@@ -646,13 +647,7 @@ class TargetView:
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
-        found, waiting = set(names), list(names)
-        while waiting:
-            for other in self._possibly_with(waiting.pop()):
-                if other not in found:
-                    found.add(other)
-                    waiting.append(other)
-        return frozenset(found)
+        return frozenset(walk(names, self._possibly_with))
 
     @cached_property
     def unknown_contents(self) -> UnknownContents:

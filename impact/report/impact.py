@@ -1,6 +1,5 @@
 """What a change reaches, as text, JSON and Markdown."""
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
@@ -13,13 +12,14 @@ from ..analysis.downstream import KINDS, Effect, Hop, Impact
 from .columns import LinePart, laid_out
 from .graph.text import WIDE, coverage_lines
 from .markdown_text import code, escaped
+from .schemas import SCHEMA, STABLE, generated_schema
 from .style import Style, painted
 
-SCHEMA = 1
 SHOWN = 8
 """As many reached nodes as are shown of a change, the nearest ones."""
 _MOST_NODES = 3
 _MOST_EFFECTS = 6
+_MOST_NODES = 20
 _ROLES = {"tightened": "error", "gone": "error", "removed": "error", "new": "good", "added": "good"}
 _HEADS = {
     "message": "messages", "topic": "topics", "condition": "publish conditions", "trigger": "triggers",
@@ -163,12 +163,12 @@ def short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECT
     return [*lines, *_line([LinePart(summary(impact))], style, 2, 4)]
 
 
-def compact(impact: Impact, most: int = 20) -> dict[str, Any]:
+def compact(impact: Impact) -> dict[str, Any]:
     """The same as data, with as many of the nodes that each change reaches, the nearest ones."""
     rows = []
     for effect in impact.effects:
         row = msgspec.to_builtins(effect)
-        row["reaches"] = [hop.node for hop in effect.reaches[:most]]
+        row["reaches"] = [hop.node for hop in effect.reaches[:_MOST_NODES]]
         row["reached"] = len(effect.reaches)
         rows.append(row)
     reached = {hop.node for effect in impact.effects for hop in effect.reaches}
@@ -180,19 +180,18 @@ def _nowhere(effect: Effect) -> str:
     return "reaches nothing in the workspace" if effect.topics else "no topic of it is known"
 
 
-def markdown(impact: Impact, most: int = _MOST_EFFECTS, told: bool = True) -> str:
-    """The same in short, for a comment: a line for each change. most: as many; told: with the last line."""
+def markdown(impact: Impact) -> str:
+    """The same in short, for a comment: a line for each change."""
     names = names_of(impact)
     rows = []
-    for effect in impact.effects[:most]:
+    for effect in impact.effects[:_MOST_EFFECTS]:
         near = [names.get(hop.node, hop.node) for hop in effect.reaches]
         reaches = f"reaches {escaped(_some(near))}" if near else _nowhere(effect)
         place = code(f"{effect.path}:{effect.line}")
         rows.append(f"- {effect.kind} {escaped(effect.change)} {code(effect.subject)} {place}: {reaches}")
-    if len(impact.effects) > most:
-        rows.append(f"- and {len(impact.effects) - most} more")
-    last = ["", f"<sub>{escaped(summary(impact))}</sub>"] if told else []
-    return "\n".join([*rows, *last]) + "\n"
+    if len(impact.effects) > _MOST_EFFECTS:
+        rows.append(f"- and {len(impact.effects) - _MOST_EFFECTS} more")
+    return "\n".join([*rows, "", f"<sub>{escaped(summary(impact))}</sub>"]) + "\n"
 
 
 def as_json(impact: Impact, told: ImpactHeading) -> str:
@@ -218,14 +217,8 @@ def schema() -> str:
     (effect, node, coverage), parts = msgspec.json.schema_components(
         [Effect, Node, Coverage], ref_template="#/$defs/{name}"
     )
-    for part in parts.values():
-        part["description"] = " ".join(part.get("description", "").split())
-        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
-        part.pop("additionalProperties", None)
     string = {"type": "string"}
     properties: dict[str, Any] = {
-        "schema": {"const": SCHEMA},
-        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": string, "version": string}},
         "workspace": string,
         "rev": string,
         "base": string,
@@ -234,14 +227,5 @@ def schema() -> str:
         "silent": {"type": "integer"},
         "coverage": coverage,
     }
-    whole = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": f"rosimpact impact, schema {SCHEMA}",
-        "description": "What `rosimpact impact --format json` prints. Fields may be added without a new schema number; "
-        "none is removed, renamed or given another meaning.",
-        "type": "object",
-        "required": list(properties),
-        "properties": properties,
-        "$defs": dict(sorted(parts.items())),
-    }
-    return json.dumps(whole, indent=1) + "\n"
+    described = f"What `rosimpact impact --format json` prints. {STABLE}"
+    return generated_schema("impact", described, properties, parts, {})

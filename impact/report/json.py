@@ -74,17 +74,9 @@ def schema_with(name: str) -> str:
 
 def as_data(finding: Finding) -> dict[str, Any]:
     """A finding as the schema has it."""
-    return {
-        "rule": finding.rule,
-        "severity": finding.severity,
-        "package": finding.package,
-        "path": finding.path,
-        "line": finding.line,
-        "column": finding.column,
-        "subject": finding.subject,
-        "targets": list(finding.targets),
-        "message": finding.message,
-        "help": finding.help,
-        "new": finding.new,
-        "fingerprint": finding.fingerprint,
-    } | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {})
+    data = {name: value for name, value in finding._asdict().items() if name not in _NOT_TOLD}
+    data["targets"] = list(finding.targets)
+    return data | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {})
+
+
+_NOT_TOLD = frozenset(("fix", "evidence", "repeated"))

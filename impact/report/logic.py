@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
+import msgspec
+
 from ...edges.console import counted, json_text, visible
 from ..logic.changes import KINDS, LogicChange
 from ..logic.history import Commit
@@ -117,54 +119,19 @@ def summary(logic: Logic) -> str:
 
 def as_json(logic: Logic, version: str) -> str:
     """The changes as JSON; docs/logic.md describes it."""
-    coverage = logic.coverage
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": version},
         "repository": logic.repository,
         "range": logic.range,
-        "commits": coverage.commits,
+        "commits": logic.coverage.commits,
         "changes": [_entry(commit, change) for commit, change in logic.changes],
-        "coverage": {
-            "commits": coverage.commits,
-            "compared": coverage.compared,
-            "cut_off": coverage.cut_off,
-            "packages": coverage.packages,
-            "statements": coverage.statements,
-            "unresolved": coverage.unresolved,
-            "unread": list(coverage.unread),
-        },
+        "coverage": msgspec.to_builtins(logic.coverage),
     }
     return json_text(document)
 
 
 def _entry(commit: Commit, change: LogicChange) -> dict[str, Any]:
-    return {
-        "commit": commit.id,
-        "date": commit.date,
-        "summary": commit.summary,
-        "kind": change.kind,
-        "package": change.package,
-        "path": change.path,
-        "line": change.line,
-        "function": change.function,
-        "node": change.node,
-        "topic": change.topic,
-        "topics": list(change.topics),
-        "type": change.type,
-        "old": change.old,
-        "new": change.new,
-        "why": change.why,
-        "unreachable": change.unreachable,
-        "reaches": [
-            {
-                "package": reached.package,
-                "node": reached.node,
-                "topic": reached.topic,
-                "callback": reached.callback,
-                "path": reached.path,
-                "line": reached.line,
-            }
-            for reached in change.reaches
-        ],
-    }
+    entry = {"commit": commit.id, "date": commit.date, "summary": commit.summary, **msgspec.to_builtins(change)}
+    entry["reaches"] = entry.pop("reaches")  # comes last
+    return entry

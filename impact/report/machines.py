@@ -115,9 +115,9 @@ def as_json(found: Machines, version: str) -> str:
         "tool": {"name": "rosimpact", "version": version},
         "first": _target(found.first),
         "second": _target(found.second),
-        "machine": [_pair(each) for each in found.machine],
+        "machine": [each._asdict() for each in found.machine],
         "versions": [
-            _pair(used.difference)
+            used.difference._asdict()
             | (
                 {"uses": [use._asdict() | {"subjects": list(use.subjects)} for use in used.uses]}
                 if found.report is not None
@@ -137,12 +137,6 @@ def as_json(found: Machines, version: str) -> str:
 
 def _target(target: ReportedTarget) -> dict[str, str]:
     return {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
-
-
-def _pair(difference) -> dict[str, str]:
-    return {
-        "kind": difference.kind, "name": difference.name, "first": difference.first, "second": difference.second,
-    }  # fmt: skip
 
 
 def schema() -> str:

@@ -7,7 +7,7 @@ from ..facts.condition import Condition
 from ..model.package import ImportUse, SyntaxUse
 from ..model.view import TargetView
 from ..model.workspace import Package
-from ..targets.target import Target
+from ..targets.distro.distro import DistroTarget
 from .rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
 
 
@@ -24,7 +24,9 @@ class Refused(NamedTuple):
     conditions: tuple[Condition, ...] = ()
 
 
-def report_refused(view: TargetView, find: Callable[[Package, Target], Iterable[Refused]]) -> Iterator[Diagnostic]:
+def report_refused(
+    view: TargetView, find: Callable[[Package, DistroTarget], Iterable[Refused]]
+) -> Iterator[Diagnostic]:
     """Diagnostics on what the Python of a view's target does not accept. find: gives it, for a package and a target
     with Python 3. Their data has `version`, that of Python, and `horizon`, which is empty for the target itself."""
     target, ahead = view.target, None
@@ -34,6 +36,8 @@ def report_refused(view: TargetView, find: Callable[[Package, Target], Iterable[
             return
         target = ahead.target
     for package in view if target.python else ():
+        if _brings_python(package):
+            continue
         found: list[Diagnostic | Upcoming] = []
         for refused in find(package, target):
             use = refused.use
@@ -46,3 +50,8 @@ def report_refused(view: TargetView, find: Callable[[Package, Target], Iterable[
             elif view.active_on(ahead, refused.conditions):
                 found.append(Upcoming(one, "python", ahead, (use.at.path, use.at.line)))
         yield from rate_upcoming(found)
+
+
+def _brings_python(package: Package) -> bool:
+    """Whether the build of a package makes a virtual environment, whose Python it chooses itself."""
+    return any(use.kind == "command" and "virtualenv" in use.name for use in package.build.uses)

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 
 from ...edges.memory import cached_method
 from .availability import horizons
-from .target import Target
+from .distro.distro import DistroTarget
 
 
 class AskedVersions:
     """The versions of packages on some targets. identity: differs whenever the targets, or what is to come for them,
     do."""
 
-    def __init__(self, targets: Iterable[Target]):
-        self._targets: list[tuple[Target, bool]] = []
+    def __init__(self, targets: Iterable[DistroTarget]):
+        self._targets: list[tuple[DistroTarget, bool]] = []
         for target in targets:
             self._targets.append((target, False))
             self._targets.extend((ahead.target, True) for ahead in horizons(target) if not ahead.platform)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
+from typing import TYPE_CHECKING
 
 from ...edges.memory import cached_method
 from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_of
@@ -25,7 +26,10 @@ from .surface.fields import before, default_fields, there
 from .surface.offers import Offered, Offers, PackageOffer
 from .surface.surface import BuildSurface
 from .symbol import Availability, Horizon, State, Symbol
-from .target import ChangeInForce, Target
+from .target import ChangeInForce
+
+if TYPE_CHECKING:
+    from .distro.distro import DistroTarget
 
 # Parts of a build by kind: what of a surface can be unknown as a whole, and the names that one version has.
 _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
@@ -62,7 +66,7 @@ _ROWS = {
 """Kinds of reviewed rows by what they are about."""
 
 
-def horizons(target: Target, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
+def horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
     """What is to come for a target, soonest first: the next sync of its distro, the distro as of the data's newest day,
     and the newest long-term distro of its generation. asked: distros that are judged anyway, and are left out."""
     found = []
@@ -79,14 +83,14 @@ def horizons(target: Target, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
 _NEAR = 2
 
 
-def _steps(target: Target) -> int:
+def _steps(target: DistroTarget) -> int:
     """How many long-term distros of a target's generation are newer than it."""
     known = known_distros()
     here = next((one.released for one in known if one.name == target.distro), "")
     return sum(one.lts and one.ros == target.ros and one.released > here for one in known)
 
 
-def coming_changes(target: Target, ahead: Horizon) -> tuple[ChangeInForce, ...]:
+def coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version."""
 
@@ -113,7 +117,7 @@ class Availabilities:
 
     def __init__(
         self,
-        target: Target,
+        target: DistroTarget,
         offers: Offers | None = None,
         providers: Providers | None = None,
         ahead: tuple[Horizon, ...] | None = None,

@@ -145,11 +145,10 @@ def read(path: Path) -> CapturedMachine:
     )  # fmt: skip
 
 
-def load_capture(path: Path | str, name: str | None = None) -> DistroTarget:
+def load_capture(path: Path) -> DistroTarget:
     """A captured file as a target. Packages that are not installed there can still be installed: they have the version
     of the distro on the day of the capture. Raises TargetError."""
-    path = Path(path)
-    return as_target(read(path), name or path.name.removesuffix(".json"), str(path))
+    return as_target(read(path), path.name.removesuffix(".json"), str(path))
 
 
 def as_target(captured: CapturedMachine, name: str, where: str) -> DistroTarget:
@@ -172,8 +171,8 @@ class MachineDifference(NamedTuple):
     second: str
 
 
-def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[MachineDifference]:
-    """What differs between two targets: distro, platform, libraries, released packages (all of both, or `names`)."""
+def differences(first: DistroTarget, second: DistroTarget) -> list[MachineDifference]:
+    """What differs between two targets: distro, platform, libraries, released packages."""
     found = []
     for kind, a, b in (("distro", first.distro, second.distro), ("platform", first.platform, second.platform),
                        ("date", first.date, second.date)):  # fmt: skip
@@ -183,7 +182,7 @@ def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] 
         a, b = first.library(name) or "", second.library(name) or ""
         if a and b and compare(a, b):
             found.append(MachineDifference("library", name, a, b))
-    for name in sorted(set(names) or first.released_names() | second.released_names()):
+    for name in sorted(first.released_names() | second.released_names()):
         a, b = first.version(name) or "", second.version(name) or ""
         if a != b:
             found.append(MachineDifference("package", name, a, b))

@@ -8,9 +8,11 @@ change is judged on a target by versions; for headers of ROS packages whose sour
 what the very release has.
 """
 
+from __future__ import annotations
+
 import hashlib
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import msgspec
 
@@ -18,8 +20,11 @@ from ..facts.usage import Pattern
 from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError, read_table
-from .target import ChangeInForce, Target
+from .target import ChangeInForce
 from .version import at_least
+
+if TYPE_CHECKING:
+    from .distro.distro import DistroTarget
 
 
 class _Shared(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -233,7 +238,7 @@ DISTROS: dict[str, int] = {
 State = Literal["removed", "deprecated", "absent"]
 
 
-def changes_in_force(target: Target, providers: Providers | None = None) -> tuple[ChangeInForce, ...]:
+def changes_in_force(target: DistroTarget, providers: Providers | None = None) -> tuple[ChangeInForce, ...]:
     """Known changes that hold on a target, deprecations and not yet existing new names included.
 
     A row whose package or library the target does not have, or has in an unknown version, is left out, except for
@@ -265,7 +270,7 @@ def _change(row: ChangeRow, state: str, version: str) -> ChangeInForce:
     )
 
 
-def version_of(package: str, library: bool, target: Target, derived: bool = False) -> str | None:
+def version_of(package: str, library: bool, target: DistroTarget, derived: bool = False) -> str | None:
     """Version of a released package, or of a platform library, on a target; None when it is not there or not known.
 
     derived: what is asked was read from Debian's packages of the library. ROS releases some of those itself (urdfdom,
@@ -281,7 +286,7 @@ def version_of(package: str, library: bool, target: Target, derived: bool = Fals
     return target.library(package) or (system_libraries().around(package, target.platform)[0] if derived else None)
 
 
-def _state(row: ChangeRow, version: str, target: Target, table: Providers) -> State | None:
+def _state(row: ChangeRow, version: str, target: DistroTarget, table: Providers) -> State | None:
     if row.pattern is not None:
         if reached(row.removed_in, version, target) and not reached(row.back_in, version, target):
             return "removed"
@@ -314,7 +319,7 @@ def _state(row: ChangeRow, version: str, target: Target, table: Providers) -> St
     return "deprecated" if reached(row.deprecated_in, version, target) else None
 
 
-def behaves_differently(row: ChangeRow, target: Target) -> bool | None:
+def behaves_differently(row: ChangeRow, target: DistroTarget) -> bool | None:
     """Whether a target has the new behaviour that a row describes; None where it has not the package, or one of another
     generation."""
     version = version_of(row.package, row.library, target)
@@ -331,7 +336,7 @@ def _still(table: Providers, package: str, header: str, distro: str, version: st
     )
 
 
-def _had(row: ChangeRow, target: Target, table: Providers) -> bool:
+def _had(row: ChangeRow, target: DistroTarget, table: Providers) -> bool:
     """Whether an earlier release of this ROS generation had the header: then it is gone rather than not there yet."""
     here = DISTROS.get(target.distro, len(DISTROS))
     return any(
@@ -340,7 +345,7 @@ def _had(row: ChangeRow, target: Target, table: Providers) -> bool:
     )
 
 
-def _same_generation(distro: str, target: Target) -> bool:
+def _same_generation(distro: str, target: DistroTarget) -> bool:
     return (DISTROS[distro] >= DISTROS["ardent"]) == (target.ros == 2)
 
 
@@ -356,14 +361,14 @@ def _release_days() -> dict[str, str]:
     return {known.name: known.released for known in known_distros() if known.released}
 
 
-def _new_by_table(row: ChangeRow, version: str, target: Target) -> bool | None:
+def _new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | None:
     if target.distro in row.new_in:
         first = row.new_in[target.distro]
         return bool(first) and at_least(version, first)
     return reached(row.new_since, version, target) if row.new_since else None
 
 
-def reached(bound: str, version: str, target: Target) -> bool:
+def reached(bound: str, version: str, target: DistroTarget) -> bool:
     """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
     if not bound:
         return False

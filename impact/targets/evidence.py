@@ -15,10 +15,11 @@ from .distro.known import known_distros, releases
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
-from .target import ChangeInForce, DatedTarget, Target
+from .target import ChangeInForce
 from .version import at_least, parts
 
 if TYPE_CHECKING:
+    from .distro.distro import DistroTarget
     from .surface.changes import ChangeEvent, Line
     from .surface.offers import Offered
     from .surface.store import Surfaces
@@ -107,7 +108,7 @@ def of_offered(offered: Offered) -> Evidence:
                     last=offered.last, first=offered.first, stored=True)  # fmt: skip
 
 
-def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
+def from_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
     """The evidence with what the stored surfaces tell of the name: declarations, and the versions between which it
     changed as a target sees it. As it was where they know nothing of such a change."""
     version = None if evidence.library or evidence.ahead else target.version(evidence.package)
@@ -138,8 +139,7 @@ def _declared(evidence: Evidence, ros: int) -> Evidence:
     """The evidence with the declarations before and since."""
     history = surfaces().history(evidence.package, ros)
     old, new = (
-        declarations(history, evidence.side, evidence.name, version)
-        for version in (evidence.last, evidence.first)
+        declarations(history, evidence.side, evidence.name, version) for version in (evidence.last, evidence.first)
     )
     # What only changed beneath, such as a base, is declared as before.
     return evidence._replace(old=old, new=new) if old != new else evidence
@@ -159,7 +159,7 @@ def _deciding(change: str, side: str, events: Sequence[ChangeEvent], place: int)
 
 
 def seen_on(
-    evidence: Evidence, targets: Sequence[Target], spoken_of: Iterable[str], providers: Providers
+    evidence: Evidence, targets: Sequence[DistroTarget], spoken_of: Iterable[str], providers: Providers
 ) -> Evidence | None:
     """The evidence with how each target stands to it, in the order given; targets that lack the package or library, or
     have it in an unknown version, are left out.
@@ -180,13 +180,13 @@ def seen_on(
     return evidence._replace(targets=found)
 
 
-def holds_on(evidence: Evidence, target: Target, providers: Providers) -> bool | None:
+def holds_on(evidence: Evidence, target: DistroTarget, providers: Providers) -> bool | None:
     """Whether a change is in force on a target; None when that is not known."""
     found = _on(evidence, target, providers)
     return None if found is None else found.holds
 
 
-def _on(evidence: Evidence, target: Target, providers: Providers) -> OnTarget | None:
+def _on(evidence: Evidence, target: DistroTarget, providers: Providers) -> OnTarget | None:
     # Of a library, only rows that were read from packages tell the last version before.
     version = version_of(evidence.package, evidence.library, target, bool(evidence.last))
     if not version or not (evidence.first or evidence.new_in or evidence.header):
@@ -197,7 +197,7 @@ def _on(evidence: Evidence, target: Target, providers: Providers) -> OnTarget | 
     return OnTarget(target.name, version, holds, _since(evidence, target, holds, providers))
 
 
-def _holds(evidence: Evidence, version: str, target: Target, providers: Providers) -> bool | None:
+def _holds(evidence: Evidence, version: str, target: DistroTarget, providers: Providers) -> bool | None:
     """Whether a change is in force in a version that a target has, or had; None when that is not known."""
     if evidence.stored:
         line = surfaces().line(evidence.package, target.ros)
@@ -235,9 +235,7 @@ def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, p
     return there_at(evidence.side, events, place) == (evidence.change == "added")
 
 
-def _since(evidence: Evidence, target: Target, holds: bool, providers: Providers) -> str:
-    if not isinstance(target, DatedTarget):
-        return ""
+def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
     released = _release_days().get(target.distro, "")
     if evidence.library:
         return released if holds and target.came_with_release(evidence.package) else ""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
+    from .distro.distro import DistroTarget
     from .evidence_record import Evidence
-    from .target import Target
 
 State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
 
@@ -28,7 +28,7 @@ class Horizon(NamedTuple):
     its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
     long-term distros ahead, which is worth no warning."""
 
-    target: Target
+    target: DistroTarget
     name: str
     soon: bool = False
     platform: bool = False

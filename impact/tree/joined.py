@@ -16,10 +16,10 @@ class JoinedTree:
     mounts: tree by folder. Where folders contain each other the inner tree hides what the outer one has there.
     """
 
-    def __init__(self, mounts: Mapping[str, Tree], label: str = ""):
+    def __init__(self, mounts: Mapping[str, Tree]):
         self.mounts = dict(sorted(mounts.items(), key=lambda mount: -len(mount[0])))
         outermost = list(self.mounts.values())[-1] if self.mounts else None
-        self.label = label or ", ".join(f"{folder or '.'} at {tree.label}" for folder, tree in sorted(mounts.items()))
+        self.label = ", ".join(f"{folder or '.'} at {tree.label}" for folder, tree in sorted(mounts.items()))
         self.name = outermost.name if outermost is not None and "" in self.mounts else ""
         self.problems: list[PathProblem] = []
         self.skipped: list[PathProblem] = []

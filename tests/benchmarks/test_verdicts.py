@@ -52,7 +52,7 @@ def record(rule: str, subject: str, verdict: str, repo: str = "someone/talker", 
 
 
 @pytest.fixture
-def batches(tmp_path: Path, monkeypatch) -> Path:
+def batches(tmp_path: Path, cache: Path, monkeypatch) -> Path:
     """A batch x of one repository, whose clone is beside it; gives the folder of the batch."""
     folder = tmp_path / "clones" / "someone+talker"
     for name, text in FILES.items():
@@ -65,7 +65,7 @@ def batches(tmp_path: Path, monkeypatch) -> Path:
     found.mkdir()
     (found / "x.repos.txt").write_text("someone/talker\nsomeone/absent\n")
     monkeypatch.setattr(first_sight, "BATCHES", found)
-    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
     return found
 
 

@@ -65,13 +65,21 @@ def test_what_a_file_declares(text, types, spaces, tf2):
 @pytest.mark.parametrize(("text", "functions"), [
     ("void Arm::raise(int by) { }\n", {"Arm::raise"}),
     ("template<class T>\nint Arm::lower(T t) const noexcept\n{\n}\n", {"Arm::lower"}),
-    ("Arm::Arm() : a_(1), b_{2} { }\nArm::~Arm() { }\n", set()),
+    ("Arm::Arm() : a_(1), b_{2} { }\nArm::~Arm() { }\n", {"Arm::Arm"}),
+    ("double normalize(double angle)\n{\n}\n", {"::normalize"}),
+    ("static double halve(double angle) {\n}\ninline double twice(double a) { return 2 * a; }\n", set()),
+    ("double normalize(double angle);\n  double indented() { }\n", set()),
     ("Robot::Robot(int a) : Base(a), b_(f(1)) { }\n", {"Robot::Robot"}),
     ("void Arm::raise(int by);\n", set()),
     ("void f() { if (Arm::ready(1)) { g(); } Arm::raise(2); call(Arm::lower(3), [] { }); }\n", set()),
 ])  # fmt: skip
 def test_which_functions_of_classes_a_file_defines(text, functions):
     assert looked("declared_cpp", text, None).functions == functions
+
+
+def test_what_a_file_calls_without_a_receiver():
+    text = "arm::normalize(1); arm.raise(2); arm->run(); Joint(3);\n"
+    assert looked("declared_cpp", text, None).called == {"normalize", "Joint", ".run"}
 
 
 def test_tables_that_differ_have_other_stamps():

@@ -31,6 +31,21 @@ import sys
 sys.argv[0] = "rosimpact"
 sys.exit(main())
 """
+# Runs several commands, one after the other, and writes the names of all modules that they loaded into a file.
+EVERY_COMMAND = """import json, sys
+try:
+    from rosimpact.impact.cli.start import main
+except ImportError:
+    from rosimpact.impact.cli.app import main
+lines, listing = sys.argv[1:]
+for sys.argv in json.loads(lines):
+    try:
+        main()
+    except SystemExit as ended:
+        assert ended.code in (0, 1), (sys.argv, ended.code)
+with open(listing, "w") as file:
+    file.write(" ".join(sorted(sys.modules)))
+"""
 # Interrupts are sent once this has made the file: Python's own start is not ours to mend.
 BEGUN = (
     """try:
@@ -423,21 +438,12 @@ class Range:
         write(place.ws, HEALTHY | BAD)
         commit(place.ws)
         commit(place.ws)
-        names: set[str] = set()
-        script = "import sys, atexit; atexit.register(lambda: open({!r}, 'w').write(' '.join(sys.modules))); "
-        for command, arguments in COMMANDS.items():
-            listing = place.out / command
-            program = (
-                self.interpreter,
-                "-c",
-                script.format(str(listing)) + "\n" + ENTRY,
-            )
-            ended = self._run(
-                Attack("warm", "", {}, (), direct=True, program=program), place, [place.filled(a) for a in arguments]
-            )
-            assert ended.status in (0, 1), ended
-            names |= set(listing.read_text().split())
-        self._ask({"warm": sorted(names)})
+        listing = place.out / "modules"
+        lines = [["rosimpact", *map(place.filled, arguments)] for arguments in COMMANDS.values()]
+        program = (self.interpreter, "-c", EVERY_COMMAND, json.dumps(lines), str(listing))
+        ended = self._run(Attack("warm", "", {}, (), direct=True, program=program, seconds=60), place, [])
+        assert ended.status == 0, ended
+        self._ask({"warm": listing.read_text().split()})
         self.template = place.cache
 
     def _ask(self, question: dict[str, Any]) -> dict[str, Any]:

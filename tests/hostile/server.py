@@ -5,6 +5,7 @@ tells how it ended. This file is run by the interpreter that has rosimpact, and 
 """
 
 import contextlib
+import functools
 import gc
 import importlib
 import json
@@ -25,17 +26,16 @@ PAGE = os.sysconf("SC_PAGE_SIZE")
 def session_of(leader):
     """{pid: (seconds of processor time with reaped children, bytes resident)} of all processes of a session."""
     found = {}
-    for name in os.listdir("/proc"):
-        if not name.isdigit():
-            continue
+    for name in filter(str.isdigit, os.listdir("/proc")):
         try:
+            if os.getsid(int(name)) != leader:
+                continue
             with open(f"/proc/{name}/stat", "rb") as file:
                 fields = file.read().rpartition(b") ")[2].split()
         except OSError:
             continue
-        if int(fields[3]) == leader:
-            seconds = sum(map(int, fields[11:15])) / TICKS
-            found[int(name)] = (seconds, int(fields[21]) * PAGE, fields[0])
+        seconds = sum(map(int, fields[11:15])) / TICKS
+        found[int(name)] = (seconds, int(fields[21]) * PAGE, fields[0])
     return found
 
 
@@ -136,6 +136,24 @@ def warm(names):
             importlib.import_module(name)
         except BaseException:
             continue
+    prepare()
+
+
+def prepare():
+    """Builds what every run builds from the program's own code alone, whatever its workspace and cache hold."""
+    try:
+        import typer.main
+        from rosimpact.impact.cli.app import _select_command
+        from rosimpact.impact.facts import kinds
+        from rosimpact.impact.rules.rule import all_rules
+    except ImportError:  # older versions
+        return
+    all_rules()
+    for kind in kinds.EXTRACTORS:
+        kinds._decoder(kind)
+    build = typer.main.get_command = functools.cache(typer.main.get_command)
+    for name in ("check", "graph", "impact", "logic", "upgrade", "why", "env"):
+        build(_select_command(name))
 
 
 def main():

@@ -28,7 +28,7 @@ def test_every_rule_has_a_line():
 def test_queries_of_every_kind_are_listed():
     """An attribute, a method, a cached one, and what a tuple of another module holds."""
     page = (DOCS / "queries.md").read_text(encoding="utf-8")
-    for heading in ("TargetView", "Workspace", "Diagnostic", "Package", "Target"):
+    for heading in ("TargetView", "Workspace", "Diagnostic", "Package", "DistroTarget"):
         assert page.count(f"\n## `{heading}`\n") == 1
     for row in ("`subject` | `str` |", "`reports_on(name)` | `bool` | True for", "`underlaid` | `bool` | True when"):
         assert f"\n| {row}" in page

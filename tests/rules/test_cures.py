@@ -30,9 +30,8 @@ Fix = Callable[..., str]
 
 
 @pytest.fixture(scope="module")
-def fix(tmp_path_factory) -> Fix:
+def fix(cache: Path) -> Fix:
     """Runs `check --fix` and returns what it reports afterwards."""
-    cache = tmp_path_factory.mktemp("cache")
 
     def fixed(workspace: Path, *targets: str) -> str:
         asked = [word for target in targets for word in ("--target", target)]

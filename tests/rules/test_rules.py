@@ -29,9 +29,8 @@ each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory, made_elf) -> Run:
+def run(tmp_path_factory, made_elf, cache) -> Run:
     """Checks the workspace of a case, once for all tests."""
-    store = tmp_path_factory.mktemp("cache")
 
     def make_installed(case: Case) -> Path:
         """Writes the workspace and its install space."""
@@ -48,7 +47,7 @@ def run(tmp_path_factory, made_elf) -> Run:
     def run_case(case: Case) -> Report:
         key = (case.file, case.title)
         if key not in checked:
-            options = Options(targets=case.targets, preview=True, cache=store, jobs=1)
+            options = Options(targets=case.targets, preview=True, cache=cache, jobs=1)
             if case.installed:
                 folder = make_installed(case)
                 checked[key] = check(folder, options._replace(install=folder / "install"))

@@ -191,6 +191,21 @@ SILENT = {
         ),
         ("package.xml", "<depend>ros1_bridge</depend>", ""),
     ),
+    "a header for ROS 2 of a package that is made for both": Silent(
+        "unknown-header",
+        ("noetic",),
+        catkin(
+            "roscpp sensor_msgs",
+            "catkin_package()\ninclude_directories(${catkin_INCLUDE_DIRS})\n"
+            "add_executable(pull pull.cpp)\ntarget_link_libraries(pull ${catkin_LIBRARIES})\n"
+            "if(SLED_OF_ROS2)\nadd_executable(push push.cpp)\nendif()\n",
+            "roscpp",
+            "sensor_msgs",
+            pull_cpp="#include <ros/ros.h>\n#include <sensor_msgs/Imu.h>\nint main() { return 0; }\n",
+            push_cpp="#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() { return 0; }\n",
+        ),
+        ("push.cpp", "#include <rclcpp/rclcpp.hpp>\n", ""),
+    ),
     "a relative import that is called like what another package had": Silent(
         "removed-symbol",
         ("humble",),
@@ -987,7 +1002,7 @@ SILENT = {
             "find_package(Boost REQUIRED COMPONENTS program_options)\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run Boost::program_options)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/program_options.hpp>\n" + MAIN,
+            run_cpp="#include <boost/program_options.hpp>\nboost::program_options::variables_map given;\n" + MAIN,
         ),
         ("CMakeLists.txt", "target_link_libraries(run Boost::program_options)\n", ""),
     ),
@@ -999,7 +1014,7 @@ SILENT = {
             "target_link_libraries(sled PUBLIC ${Boost_LIBRARIES})\nadd_executable(run run.cpp)\n"
             "target_link_libraries(run PRIVATE sled)\ninstall(TARGETS sled DESTINATION lib)\n" + INSTALLED,
             "boost",
-            run_cpp="#include <boost/filesystem.hpp>\n" + MAIN,
+            run_cpp="#include <boost/filesystem.hpp>\nboost::filesystem::path place;\n" + MAIN,
             sled_cpp="int sled() { return 0; }\n",
         ),
         ("CMakeLists.txt", "target_link_libraries(run PRIVATE sled)", ""),
@@ -1053,7 +1068,8 @@ SILENT = {
         ("melodic",),
         catkin(
             "roscpp",
-            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n" + CATKIN_NODE
+            "set(CMAKE_CXX_STANDARD 11)\nfind_package(barometer REQUIRED)\n"
+            + CATKIN_NODE
             + "target_link_libraries(run ${catkin_LIBRARIES} barometer::core)",
             "roscpp",
             run_cpp="#include <memory>\nint main() { return *std::make_unique<int>(0); }\n",
@@ -1105,16 +1121,11 @@ SILENT = {
 }
 
 
-@pytest.fixture(scope="module")
-def store(tmp_path_factory) -> Path:
-    return tmp_path_factory.mktemp("cache")
-
-
 @pytest.mark.parametrize("row", SILENT.values(), ids=SILENT)
-def test_what_is_left_alone(row: Silent, store: Path):
+def test_what_is_left_alone(row: Silent, cache: Path):
     def reports(files: Files) -> bool:
         """Whether the rule reports something, for most rules above a note."""
-        options = Options(targets=row.targets, preview=True, cache=store, select=(row.rule,))
+        options = Options(targets=row.targets, preview=True, cache=cache, select=(row.rule,))
         quiet = () if all_rules()[row.rule].severity == "note" else ("note",)
         return any(finding.severity not in quiet for finding in rule_cases.check_files(files, options).findings)
 
@@ -1125,26 +1136,26 @@ def test_what_is_left_alone(row: Silent, store: Path):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_where_nothing_changed_nothing_is_new(case: Case, store: Path):
-    report = rule_cases.check_files(case.files, Options(targets=case.targets, preview=True, cache=store), case.files)
+def test_where_nothing_changed_nothing_is_new(case: Case, cache: Path):
+    report = rule_cases.check_files(case.files, Options(targets=case.targets, preview=True, cache=cache), case.files)
     comparing = rule_cases.rules_that_compare()
     assert [f for f in report.findings if f.new or f.rule in comparing] == []
 
 
-def test_a_commit_without_changes_does_not_fail(tmp_path: Path, store: Path):
+def test_a_commit_without_changes_does_not_fail(tmp_path: Path, cache: Path):
     for name, text in SILENT["a header chosen by a version"].files.items():
         (tmp_path / name).write_text(text.replace("#if RCLCPP_VERSION_GTE(28, 0, 0)", "#if 0"))
     git = ["git", "-C", str(tmp_path), "-c", "user.name=r", "-c", "user.email=r@example.org"]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "first"]):
         subprocess.run([*git, *command], check=True)
     command = ["check", str(tmp_path), "--target", "jazzy", "--quiet"]
-    environment = {"ROSIMPACT_CACHE": str(store)}
+    environment = {"ROSIMPACT_CACHE": str(cache)}
     assert CliRunner().invoke(app, command, env=environment).exit_code == 1
     assert CliRunner().invoke(app, [*command, "--base", "HEAD"], env=environment).exit_code == 0
 
 
 @pytest.mark.parametrize(("module", "severity"), [("distutils.version", "warning"), ("imp", "error")])
-def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
+def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path, cache):
     files = ament(
         "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
         "exec_depend:rclpy",
@@ -1152,6 +1163,31 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     )
     for name, text in files.items():
         (tmp_path / name).write_text(text)
-    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    report = check(tmp_path, Options(targets=("jazzy",), cache=cache, jobs=1))
     found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
     assert found == [(severity, module)]
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/cv_bridge", []), ("external/vision", ["error"])])
+def test_a_submodule_that_is_not_checked_out_has_the_package_that_it_is_called_after(folder, expected, tmp_path):
+    files = ament(
+        "find_package(cv_bridge REQUIRED)\nadd_executable(look look.cpp)\n"
+        "target_link_libraries(look cv_bridge::cv_bridge)",
+        "cv_bridge",
+        look_cpp="#include <cv_bridge/cv_bridge.h>\nint main() { return 0; }\n",
+    )
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "removed-header"] == expected
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("external/audio", []), ("external/vision", ["warning"])])
+def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_it(folder, expected, tmp_path):
+    files = ament("", "exec_depend:audio_capture")
+    files[".gitmodules"] = f'[submodule "bridge"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected

@@ -135,7 +135,10 @@ def opencv(folder: Path, cmake: str, target: str, source: str) -> set[str]:
     return {f.severity for f in check(folder, options).findings if f.subject == "OpenCV"}
 
 
-OPTIONS = "#include <boost/program_options.hpp>\n#include <ros/ros.h>\nint main() {}\n"
+OPTIONS = (
+    "#include <boost/program_options.hpp>\n#include <ros/ros.h>\n"
+    "int main() { boost::program_options::variables_map given; }\n"
+)
 
 
 @pytest.mark.parametrize(

@@ -287,9 +287,9 @@ ROWS = {
     "a package of a repository": Row(
         "unresolvable-key",
         "noetic",
-        catkin("sled", "", "catkin_package()", "exec_depend:swri_console"),
-        ("sled/package.xml", "swri_console", "swri"),
-        ("error", "swri"),
+        catkin("sled", "", "catkin_package()", "exec_depend:husky_msgs"),
+        ("sled/package.xml", "husky_msgs", "husky"),
+        ("error", "husky"),
     ),
     "a script installed as a program": Row(
         "missing-install",
@@ -663,17 +663,12 @@ SILENT: dict[str, tuple[str, str, Files]] = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def store(tmp_path_factory) -> Path:
-    return tmp_path_factory.mktemp("cache")
-
-
 @pytest.fixture
-def said(tmp_path: Path, store: Path) -> Said:
+def said(cache: Path) -> Said:
     """Writes files, and gives severity and subject of what a rule says of the workspace above a note."""
 
     def said_by(files: Files, target: str, rule: str) -> list[tuple[str, str]]:
-        report = rule_cases.check_files(files, Options(targets=(target,), cache=store, select=(rule,)))
+        report = rule_cases.check_files(files, Options(targets=(target,), cache=cache, select=(rule,)))
         return [(f.severity, f.subject) for f in report.findings if f.severity != "note"]
 
     return said_by

@@ -3,12 +3,12 @@
 import msgspec
 import pytest
 from rosimpact.impact.targets.changes import all_rows, changes_in_force, transitive_includes
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.target import Target
 from rosimpact.impact.targets.version import at_least, parts
 
 
-class Machine(Target):
+class Machine(DistroTarget):
     """A target that only has libraries."""
 
     def __init__(self, python_major: int = 3, **libraries: str):

@@ -125,7 +125,7 @@ def written(tmp_path_factory):
     return SystemLibraries(file)
 
 
-def test_a_written_file_tells_of_each_header_which_versions_have_it_and_what_is_linked(written, monkeypatch):
+def test_a_written_file_tells_of_each_header_which_versions_have_it(written, monkeypatch):
     monkeypatch.setattr(SystemLibraries, "of_header", lambda self, header: "arm" if self.has("arm", header) else "")
     assert written.versions("arm") == {
         "debian bullseye": "1.0", "debian bookworm": "1.2", "debian trixie": "2.0", "debian sid": "2.0"
@@ -137,7 +137,6 @@ def test_a_written_file_tells_of_each_header_which_versions_have_it_and_what_is_
     assert written.included("arm/arm.h", old).paths == ("arm/part000.h", "arm/part001.h")
     assert written.included("arm/arm.h", between).paths == ("arm/part000.h", "arm/part001.h", "arm/core.h")
     assert written.included("arm/old.h", between).paths == () and written.included("arm/old.h", "debian trixie") is None
-    assert written.linking("arm/part128.h", old).libraries == ("arm", "arm_core")
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path):
@@ -169,25 +168,5 @@ def test_a_version_that_was_read_tells_more_than_those_around_it():
     assert found is not None and found.here
 
 
-@pytest.mark.parametrize(
-    ("header", "compiled", "libraries", "name"),
-    [
-        ("yaml-cpp/yaml.h", True, ("yaml-cpp",), "YAML_CPP_LIBRARIES"),
-        ("tinyxml2.h", True, ("tinyxml2",), "tinyxml2::tinyxml2"),
-        ("curl/curl.h", True, ("curl",), "libcurl"),
-        ("opencv2/calib3d.hpp", True, ("opencv_calib3d",), "OpenCV"),
-        ("nlohmann/json.hpp", False, (), "nlohmann_json::nlohmann_json"),
-        ("Eigen/Core", False, (), "Eigen3::Eigen"),
-        ("SDL2/SDL.h", True, None, "SDL2::SDL2"),
-    ],
-)
-def test_how_the_library_of_a_header_is_linked(header, compiled, libraries, name):
-    found = system_libraries().linking(header, "ubuntu noble")
-    assert found is not None and found.compiled is compiled
-    assert libraries is None or found.libraries == libraries
-    assert name in found.names
-
-
 def test_headers_of_ros_and_of_the_compiler_are_of_no_library():
-    assert system_libraries().linking("rclcpp/rclcpp.hpp", "ubuntu noble") is None
-    assert system_libraries().linking("stdio.h", "ubuntu noble") is None
+    assert system_libraries().of_header("rclcpp/rclcpp.hpp") == system_libraries().of_header("stdio.h") == ""

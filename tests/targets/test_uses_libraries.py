@@ -5,7 +5,7 @@ import re
 import pytest
 from rosimpact.impact.facts.usage import places_of_use
 from rosimpact.impact.targets.changes import all_uses, changes_in_force, standards_of
-from rosimpact.impact.targets.target import Target
+from rosimpact.impact.targets.distro.distro import DistroTarget
 
 
 class Nothing:
@@ -18,7 +18,7 @@ class Nothing:
         return ()
 
 
-class Machine(Target):
+class Machine(DistroTarget):
     """A target that only has libraries and packages of these versions."""
 
     def __init__(self, **versions: str):

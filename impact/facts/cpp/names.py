@@ -22,6 +22,19 @@ def joined(scope: str, name: str) -> str:
     return f"{scope}::{name}" if scope and name else scope or name
 
 
+def closing_angle(text: str, opened: int) -> int:
+    """Where the `>` stands that closes the `<` at a place, -1 where none does."""
+    depth = 0
+    for at in range(opened, len(text)):
+        if text[at] == "<":
+            depth += 1
+        elif text[at] == ">" and text[at - 1] != "-":
+            depth -= 1
+            if depth == 0:
+                return at
+    return -1
+
+
 def split_at_commas(text: str) -> list[str]:
     """The parts of a list, split at commas outside of brackets of every kind, `<>` among them."""
     parts, depth, begins = [], 0, 0

@@ -2,11 +2,34 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from ..markup import Attribute, Document, Element, decode, scan
 from ..place import Problem
 from .parameter_files import MOST_ENTRIES, YamlNode, yaml_tree
+
+KINDS_2 = {
+    "let": "let",
+    "lifecycle_node": "lifecycle",
+    "node_container": "container",
+    "composable_node_container": "container",
+    "composable_node": "composable",
+    "load_composable_node": "load",
+    "push_ros_namespace": "namespace",
+    "push-ros-namespace": "namespace",
+    "set_remap": "remap",
+    "set_parameter": "parameter",
+    "set_parameters_from_file": "parameter-file",
+    "set_use_sim_time": "parameter",
+    "set_env": "environment",
+    "executable": "process",
+    "timer": "group",
+}
+"""What an element of ROS 2 alone stands for, by its name."""
+_ONLY_1 = re.compile(r"\$\((?:find|arg|optenv) ")
+_ONLY_2 = re.compile(r"\$\((?:var|find-pkg-share|find-pkg-prefix|find-exec|exec-in-pkg|not|and|or|equals|not-equals) ")
+_TAGS_1 = frozenset({"rosparam", "test", "machine"})
 
 
 def read_document(data: bytes, kind: str) -> Document:
@@ -62,3 +85,19 @@ def _as_text(value: Any) -> str:
     if value is None:
         return ""
     return ("true" if value else "false") if isinstance(value, bool) else str(value)
+
+
+def generation_of(document: Document) -> int:
+    """1 or 2 by what only that generation writes, 0 where nothing tells."""
+    counts = [0, 0, 0]
+    for element in document.elements:
+        names = {a.name for a in element.attributes}
+        if element.name in _TAGS_1 or "ns" in names or (element.name == "node" and "type" in names):
+            counts[1] += 1
+        elif element.name in KINDS_2 or names & {"exec", "namespace"} or (element.name == "param" and "from" in names):
+            counts[2] += 1
+        for attribute in element.attributes:
+            if "$(" in attribute.value:
+                counts[1] += bool(_ONLY_1.search(attribute.value))
+                counts[2] += bool(_ONLY_2.search(attribute.value))
+    return 1 if counts[1] > counts[2] else 2 if counts[2] else 0

@@ -13,7 +13,7 @@ import msgspec
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
 from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, together
-from .documents import read_document
+from .documents import KINDS_2, generation_of, read_document
 from .parameter_files import DEEPEST
 
 
@@ -203,7 +203,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
     if not document.elements or document.elements[0].name != "launch":
         lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
         return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
-    generation = 2 if is_yaml else _generation(document)
+    generation = 2 if is_yaml else generation_of(document)
     entities: list[_Entity] = []
     depths: list[int] = []
     problems = list(document.problems)
@@ -245,46 +245,8 @@ def _own_text(document: Document, element: Element) -> str:
     return unescape(_COMMENT_OR_CDATA.sub(lambda m: m[1] or "", raw))
 
 
-_ONLY_1 = re.compile(r"\$\((?:find|arg|optenv) ")
-_ONLY_2 = re.compile(r"\$\((?:var|find-pkg-share|find-pkg-prefix|find-exec|exec-in-pkg|not|and|or|equals|not-equals) ")
-_TAGS_1 = frozenset({"rosparam", "test", "machine"})
-
-
-def _generation(document: Document) -> int:
-    """1 or 2 by what only that generation writes, 0 where nothing tells."""
-    counts = [0, 0, 0]
-    for element in document.elements:
-        names = {a.name for a in element.attributes}
-        if element.name in _TAGS_1 or "ns" in names or (element.name == "node" and "type" in names):
-            counts[1] += 1
-        elif element.name in _KINDS_2 or names & {"exec", "namespace"} or (element.name == "param" and "from" in names):
-            counts[2] += 1
-        for attribute in element.attributes:
-            if "$(" in attribute.value:
-                counts[1] += bool(_ONLY_1.search(attribute.value))
-                counts[2] += bool(_ONLY_2.search(attribute.value))
-    return 1 if counts[1] > counts[2] else 2 if counts[2] else 0
-
-
-_KINDS_2 = {
-    "let": "let",
-    "lifecycle_node": "lifecycle",
-    "node_container": "container",
-    "composable_node_container": "container",
-    "composable_node": "composable",
-    "load_composable_node": "load",
-    "push_ros_namespace": "namespace",
-    "push-ros-namespace": "namespace",
-    "set_remap": "remap",
-    "set_parameter": "parameter",
-    "set_parameters_from_file": "parameter-file",
-    "set_use_sim_time": "parameter",
-    "set_env": "environment",
-    "executable": "process",
-    "timer": "group",
-}
 _KINDS = {
-    **_KINDS_2,
+    **KINDS_2,
     "node": "node",
     "test": "test",
     "include": "include",

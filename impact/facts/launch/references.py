@@ -12,7 +12,7 @@ from msgspec import structs
 from ..markup import TOKEN, Attribute, Document, Element, decode, scan, well_formed
 from ..place import Problem, Reference
 from ..words import words_of
-from .documents import read_document
+from .documents import generation_of, read_document
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -32,6 +32,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
     and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
+    generation: of a launch file, as LaunchFile has it.
     """
 
     references: tuple[Reference, ...]
@@ -39,6 +40,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
     unresolved: tuple[Problem, ...] = ()
     words: str = ""
+    generation: int = 0
 
 
 PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
@@ -249,7 +251,8 @@ def _launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
         _everything(found, element, conditional)
         if name == "rosparam" and element.text and "plugin" in element.text:
             _plugin_values(found, element.text, element.text_offset, conditional)
-    return found.file(*document.problems)
+    generation = generation_of(document) if kind == "launch_xml" else 0
+    return structs.replace(found.file(*document.problems), generation=generation)
 
 
 def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:

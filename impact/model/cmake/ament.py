@@ -9,7 +9,7 @@ from .blocks import CommandCall
 from .build import FoundPackage, GeneratedInterfaces
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
-from .targets import add_links, add_sources, known, makes_archives
+from .targets import add_links, add_sources, known, makes_archives, note_signature
 from .values import Word, sections, split_words, word
 
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
@@ -25,7 +25,9 @@ def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Wo
     """ament_target_dependencies()."""
     if args:
         items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
-        add_links(run, known(run, args[0]), items, "ament")
+        draft = known(run, args[0])
+        note_signature(run, draft, args)
+        add_links(run, draft, items, "ament")
 
 
 _EXPORTS = {
@@ -54,6 +56,7 @@ def ament_export(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 @handles("ament_package")
 def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_package(CONFIG_EXTRAS ...)."""
+    run.refuse_project()
     if not run.silent:
         run.ament_package = run.place(call.at)
     given = sections(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
@@ -63,6 +66,12 @@ def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None
         path = run.tree_path(item)
         run.add_export(path, "cfg_extras", item.at, run.under(item))
         run.hand_on(path, item.at)
+
+
+@handles("ament_package_xml", "catkin_package_xml")
+def package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """ament_package_xml() and catkin_package_xml(): the version is known from here on."""
+    run.refuse_project()
 
 
 @handles("ament_register_extension")
@@ -110,7 +119,8 @@ def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[W
             "SKIP_INSTALL" not in given,
         )
     )
-    run.new_target(target, "generated", target.at)
+    run.add_target(target, "generated")
+    run.refuse_project()
     run.set_text("rosidl_generate_interfaces_TARGET", str(target), call.at)
     for language in ("rosidl_typesupport_cpp", "rosidl_typesupport_c", "rosidl_generator_c", "rosidl_generator_cpp",
                      "rosidl_generator_py", "cpp", "py"):  # fmt: skip

@@ -192,6 +192,19 @@ class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     makes: tuple[str, ...] = ()
 
 
+class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
+    times), `mixed` (a target that is linked with keywords and without), `no target` (something is given to a target
+    that is not there yet, or never), `project` (catkin_package() or ament_package() finds another name in package.xml
+    than that of the project), `no value` (a property of set_target_properties() whose value is a variable that nothing
+    sets)."""
+
+    kind: str
+    name: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
+
+
 def for_tests(conditions: Iterable[Condition]) -> bool:
     """True for what CMake finds or makes only where tests are built."""
     return any("TESTING" in c.text for c in conditions)
@@ -208,10 +221,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called. repeated: targets
-    that are added a second time, with the place and conditions of both times. read_elsewhere: the CMake files that it
-    asks for and that do not lie in the package. asked: the packages whose X_FOUND a test reads. stops: each
-    message(FATAL_ERROR) under conditions, with its text."""
+    they register). before_catkin_package: targets that are added before catkin_package() is called. refused: names at
+    which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the
+    packages whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -237,7 +249,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
     before_catkin_package: tuple[str, ...] = ()
-    repeated: tuple[tuple[str, At, tuple[Condition, ...]], ...] = ()
+    refused: tuple[RefusedName, ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()

@@ -31,6 +31,7 @@ _PROMISES = {
 @handles("catkin_package")
 def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_package()."""
+    run.refuse_project()
     if not run.silent:
         run.catkin_package = run.place(call.at)
         opposite = {(held.text, not held.negated) for held in run.conditions}
@@ -81,6 +82,7 @@ def _extras_path(run: Interpreter, item: Word) -> str:
 @handles("catkin_metapackage")
 def catkin_metapackage(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_metapackage()."""
+    run.refuse_project()
     if not run.silent:
         run.catkin_package = run.place(call.at)
 

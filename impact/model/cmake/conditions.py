@@ -1,36 +1,23 @@
 """The tests of if(), elseif() and while() where CMake's files are interpreted: what operands mean there."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, constant
 from .names import SINCE
 from .regex import match
-from .values import CMakeValue, split_list
+from .values import split_list
+
+if TYPE_CHECKING:
+    from .interpreter import Interpreter
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
 
 
-class World(Protocol):
-    """What a condition may ask."""
-
-    def variable(self, name: str) -> CMakeValue | None: ...
-
-    def is_target(self, name: str) -> bool | None: ...
-
-    def is_command(self, name: str) -> bool | None: ...
-
-    def path_exists(self, path: str, directory: bool) -> bool | None: ...
-
-    def matched(self, groups: tuple[str, ...]) -> None: ...
-
-    def quotes_protect(self) -> bool: ...
-
-    def spend(self, steps: int) -> None: ...
-
-
-def evaluate(tokens: Sequence[Token], world: World) -> bool | None:
+def evaluate(tokens: Sequence[Token], world: Interpreter) -> bool | None:
     """The value of a condition, None when it depends on what is not known or is malformed."""
     return _InWorld(tokens, world).whole() if tokens else False
 
@@ -58,7 +45,7 @@ def version_key(text: str) -> tuple[int, ...]:
 class _InWorld(CMakeTest):
     """A test with the variables, targets and files that the interpreter knows."""
 
-    def __init__(self, tokens: Sequence[Token], world: World) -> None:
+    def __init__(self, tokens: Sequence[Token], world: Interpreter) -> None:
         super().__init__(tokens)
         self.world = world
 

@@ -1,49 +1,34 @@
 """Targets while they are being described, command by command."""
 
+import msgspec
+
 from ...facts.condition import Condition
 from .build import At, BuildTarget, Link
 
 
-class TargetDraft:
-    """A BuildTarget that still grows; lists keep the order of the commands."""
+class TargetDraft(msgspec.Struct, eq=False):
+    """A BuildTarget that still grows; lists keep the order of the commands. sources: path to the conditions under which
+    it was added. installed_as: the artifact: executable, library, static or module. signatures: of
+    target_link_libraries(), True with keywords, False without, each with the conditions of its first call."""
 
-    __slots__ = (
-        "added",
-        "alias_of",
-        "archive",
-        "at",
-        "conditions",
-        "definitions",
-        "excluded",
-        "export_name",
-        "installed_as",
-        "installed_includes",
-        "kind",
-        "links",
-        "name",
-        "output_name",
-        "public_standard",
-        "sources",
-        "standard",
-    )
-
-    def __init__(self, name: str, kind: str, at: At, conditions: tuple[Condition, ...]):
-        self.name = name
-        self.kind = kind
-        self.at = at
-        self.conditions = conditions
-        # Path to the conditions under which it was added.
-        self.sources: dict[str, tuple[Condition, ...]] = {}
-        self.links: dict[Link, None] = {}
-        self.definitions: dict[str, None] = {}
-        self.standard = 0
-        self.output_name = ""
-        self.alias_of = ""
-        self.export_name = ""
-        self.public_standard = 0
-        self.installed_includes: dict[str, None] = {}
-        self.excluded = self.added = self.archive = False
-        self.installed_as = kind  # the artifact: executable, library, static or module
+    name: str
+    kind: str
+    at: At
+    conditions: tuple[Condition, ...]
+    installed_as: str
+    sources: dict[str, tuple[Condition, ...]] = {}
+    links: dict[Link, None] = {}
+    definitions: dict[str, None] = {}
+    standard: int = 0
+    output_name: str = ""
+    alias_of: str = ""
+    export_name: str = ""
+    public_standard: int = 0
+    installed_includes: dict[str, None] = {}
+    excluded: bool = False
+    added: bool = False
+    archive: bool = False
+    signatures: dict[bool, tuple[Condition, ...]] = {}
 
     def finish(self) -> BuildTarget:
         """The target as it stands."""
@@ -95,7 +80,7 @@ class Targets:
         """The target of this name; made when it is new. One that was only mentioned takes kind and place from here."""
         draft = self._drafts.get(name)
         if draft is None:
-            draft = self._drafts[name] = TargetDraft(name, kind, at, conditions)
+            draft = self._drafts[name] = TargetDraft(name, kind, at, conditions, kind)
         elif draft.kind == "unknown" and kind != "unknown":
             draft.kind = draft.installed_as = kind
             draft.at = at

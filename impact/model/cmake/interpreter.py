@@ -28,6 +28,7 @@ from .build import (
     GeneratedInterfaces,
     Install,
     ReadFile,
+    RefusedName,
     UnknownCommand,
 )
 from .drafts import TargetDraft, Targets
@@ -86,6 +87,9 @@ _FINDER = re.compile(r"find\w*_packages?(?:_|\Z)")
 _NEEDS_VALUES = frozenset(
     {"install", "add_subdirectory", "add_library", "add_executable", "target_link_libraries", "target_sources"}
 )
+
+# Commands of which a version of CMake has more forms than the one before.
+_GROWN = frozenset(name.partition("(")[0] for name in SINCE if "(" in name)
 
 # What the setup files of ros_environment set, where it is installed.
 _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
@@ -163,7 +167,7 @@ class Interpreter:
         self.before_catkin_package: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
-        self.repeated: dict[tuple[str, At, tuple[Condition, ...]], None] = {}
+        self.refused: dict[RefusedName, None] = {}
         self.asked: dict[str, None] = {}
         self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
         self.ament_package: At | None = None
@@ -265,7 +269,7 @@ class Interpreter:
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
-            repeated=tuple(self.repeated),
+            refused=tuple(self.refused),
             read_elsewhere=tuple(self.read_elsewhere),
             asked=tuple(self.asked),
             stops=tuple(self.stops),
@@ -317,6 +321,9 @@ class Interpreter:
         self.spend(1)
         name = self.command = call.name
         self.use_feature(name, call.at)
+        if name in _GROWN:
+            for template in call.templates if name == "project" else call.templates[:1]:
+                self.use_feature(f"{name}({template.raw})", call.at)
         handler = HANDLERS.get(name)
         if handler is not None:
             if name not in BUILTIN_COMMANDS:
@@ -1159,10 +1166,23 @@ class Interpreter:
         if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
             opposite = {(held.text, not held.negated) for held in before.conditions}
             if not any((held.text, held.negated) in opposite for held in conditions):
-                self.repeated[(str(name), self.place(name.at), merge(before.conditions, conditions))] = None
+                self.refuse("twice", name, before.conditions)
         draft = self.new_target(name, kind, name.at)
         draft.added = name.sure and kind not in ("imported", "alias")
         return draft
+
+    def refuse(self, kind: str, name: Word, conditions: tuple[Condition, ...] = ()) -> None:
+        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
+        if name.sure and "$<" not in name and not self.silent:
+            self.refused[RefusedName(kind, str(name), self.place(name.at), merge(conditions, self.under(name)))] = None
+
+    def refuse_project(self) -> None:
+        """Notes the name of the project where it is not that of the package, which ament_package_xml() of
+        ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""
+        held = self.get("PROJECT_NAME")
+        if held is not None and held.sure and held.text != self.package:
+            self.refuse("project", held.words[0])
+        self.set_unknown(f"{self.project}_VERSION", self.here())
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from ....edges.reach import walk
 from ...targets.version import at_least
 from .build import At, BuildTarget, Link, for_tests
 
@@ -43,21 +44,25 @@ def linked_items(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
     targets = {one.name: one for one in package.build.targets}
     items = {link.item for link in package.build.links}
-    seen: set[str] = set()
-    waiting = [target, *items]
-    while waiting:
-        own = targets.get(waiting.pop())
-        if own is None or own.name in seen:
-            continue
+    for own in reached_targets(targets, (target, *items), ("link", "ament", "objects")):
         if own.kind in ("unknown", "external", "fetched", "imported"):
             return None
-        seen.add(own.name)
-        waiting.extend([own.alias_of] if own.alias_of else [])
-        for link in own.links:
-            if link.how in ("link", "ament", "objects"):
-                items.add(link.item)
-                waiting.append(link.item)
+        items.update(link.item for link in own.links if link.how in ("link", "ament", "objects"))
     return items
+
+
+def reached_targets(
+    targets: Mapping[str, BuildTarget], names: Iterable[str], hows: Container[str] | None = None
+) -> Iterator[BuildTarget]:
+    """Targets of a package, by name, and those of it that they are given in turn. hows: what counts, all when None."""
+
+    def linked(name: str) -> Iterator[str]:
+        own = targets.get(name)
+        if own is not None:
+            yield own.alias_of
+            yield from (link.item for link in own.links if hows is None or link.how in hows)
+
+    return (targets[name] for name in walk(names, linked) if name in targets)
 
 
 def exported_targets(package: Package) -> Iterator[BuildTarget]:

@@ -124,7 +124,11 @@ def known(run: Interpreter, name: Word) -> TargetDraft:
         draft = followed
     if draft is not None:
         return draft
-    return run.new_target(name, "generated" if run.is_typesupport(name) else "unknown", name.at)
+    typesupport = run.is_typesupport(name)
+    # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
+    if run.command != "add_dependencies" and not typesupport and name not in run.maybe_set and "::" not in name:
+        run.refuse("no target", name)
+    return run.new_target(name, "generated" if typesupport else "unknown", name.at)
 
 
 # The folders of the prefix that those who link a target search; spaces stand where a list was split.
@@ -160,7 +164,24 @@ def target_link_libraries(run: Interpreter, call: CommandCall, args: list[Word])
     """target_link_libraries(), old and new keywords."""
     if args:
         items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
-        add_links(run, known(run, args[0]), items, "link")
+        draft = known(run, args[0])
+        note_signature(run, draft, args)
+        add_links(run, draft, items, "link")
+
+
+def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> None:
+    """Remembers which signature of target_link_libraries() a call has, and refuses what has both (CMP0023). A variable
+    that is not known may hold a keyword."""
+    if len(args) < 2 or run.silent or run.minimum_policy < (2, 8, 12) or not args[0].sure:
+        return
+    keyword = args[1] in ("PUBLIC", "PRIVATE", "INTERFACE")
+    if not keyword and (not args[1].sure or "$" in args[1]) and not re.fullmatch(r"\$\{\w+_LIBRARIES\}", args[1]):
+        return
+    other = draft.signatures.get(not keyword)
+    opposite = {(held.text, not held.negated) for held in other or ()}
+    if other is not None and not any((held.text, held.negated) in opposite for held in run.under(args[0])):
+        run.refuse("mixed", args[0], other)
+    draft.signatures.setdefault(keyword, run.under(args[0]))
 
 
 @handles("target_include_directories")
@@ -312,6 +333,11 @@ def set_target_properties(run: Interpreter, call: CommandCall, args: list[Word])
     if "PROPERTIES" in args:
         split = position(args, "PROPERTIES")
         pairs = args[split + 1 :]
+        versions = {f"${{{run.project}_VERSION}}", "${PROJECT_VERSION}"}
+        if not any(template.quoted for template in call.templates):
+            for item in pairs[1::2]:
+                if item in versions and run.get(item[2:-1]) is None:
+                    run.refuse("no value", word(item, item.at, item.conditions))
         for name in split_words(args[:split]):
             for key, value in zip(pairs[::2], pairs[1::2], strict=False):
                 set_target_property(run, name, key, value)

@@ -1,45 +1,63 @@
 """Functions of a package that its sources use and that other sources define, told by their headers: what a class of
-`arm.hpp` defines in `arm.cpp`."""
+`arm.hpp` defines in `arm.cpp`, and the functions without a class beside it."""
 
 from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Collection, Iterator, Mapping
 
+from ....edges.reach import Reach
+from ...facts.searches import DeclaredCpp
+
 
 def list_own_calls(
-    compiled: Mapping[str, Collection[str]],
+    sources: Mapping[str, Collection[str]],
     included: Callable[[str], Collection[str]],
     spoken: Callable[[str], frozenset[str]],
-    defined: Callable[[Collection[str]], Mapping[str, Collection[str]]],
+    declared: Callable[[Collection[str]], Mapping[str, DeclaredCpp]],
 ) -> Iterator[tuple[str, str, str]]:
     """Source, the other source that defines a function which it seems to use, and that function, `Class::function`.
 
-    compiled: the targets of each source. included: the files of the package that a file includes itself. spoken: all
-    words of a file. defined: the functions of classes and namespaces that each of some sources defines."""
-    own_header = {path: next((h for h in included(path) if _stem_of(h) == _stem_of(path)), "") for path in compiled}
-    sources: dict[str, list[str]] = {}
+    sources: the targets of each source; none where nothing compiles it. included: the files of the package that a file
+    includes itself. spoken: all words of a file. declared: what each of some sources defines and calls."""
+    own_header = {path: next((h for h in included(path) if _stem_of(h) == _stem_of(path)), "") for path in sources}
+    beside: dict[str, list[str]] = {}
     for path, header in own_header.items():
         if header:
-            sources.setdefault(header, []).append(path)
-    pairs = [
-        (path, other)
-        for path, targets in compiled.items()
-        for header in {*included(path), *(included(own_header[path]) if own_header[path] else ())}
-        for other in sources.get(header, ())
-        if header != own_header[path] and not set(targets) <= set(compiled[other])
-    ]
-    functions = defined(sorted({other for _, other in pairs}))
+            beside.setdefault(header, []).append(path)
+    reach = Reach(lambda path: (included(path), ()))
+    with_source, stems = reach.bits(beside), {header: _plain(_stem_of(header)) for header in beside}
+    pairs = []
+    for path, targets in sources.items():
+        own = own_header[path]
+        if not targets or not (reached := reach.masks(path)[0] & with_source & ~reach.bit(own)):
+            continue
+        direct, words = {*included(path), *(included(own) if own else ())}, {_plain(word) for word in spoken(path)}
+        for header in reach.names(reached):
+            # What comes from far counts where the file names the class that the header is called after.
+            if header in direct or stems[header] in words:
+                pairs += [(path, other) for other in beside[header] if not set(targets) <= set(sources[other])]
+    known = declared(sorted({path for pair in pairs for path in pair}))
     for path, other in sorted(pairs):
-        said = spoken(path)
+        if path not in known or other not in known:
+            continue
+        said, called = spoken(path), known[path].called
         around = said | (spoken(own_header[path]) if own_header[path] else frozenset())
-        own = {name.partition("::")[2] for name in defined((path,)).get(path, ())} if functions.get(other) else ()
-        for name in sorted(functions.get(other, ())):
+        own = {name.partition("::")[2] for name in known[path].functions}
+        for name in sorted(known[other].functions):
             owner, _, function = name.partition("::")
-            if owner != function and owner in around and function in said and function not in own:
-                yield path, other, name
+            if owner == function or not owner:  # a constructor, or a function without a class
+                used = function in called and function in spoken(own_header[other])
+            else:
+                used = owner in around and (function in said or f".{function}" in called)
+            if used and function not in own:
+                yield path, other, name.removeprefix("::")
                 break
 
 
 def _stem_of(path: str) -> str:
     return posixpath.basename(path).partition(".")[0]
+
+
+def _plain(name: str) -> str:
+    return name.replace("_", "").lower()

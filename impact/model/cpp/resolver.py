@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ....edges.memory import cached_method
 from ...facts.cpp.code import CppCode
-from ...facts.cpp.names import split_at_commas, without_templates
+from ...facts.cpp.names import closing_angle, split_at_commas, without_templates
 from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
 from ..api import Vocabulary
 from ..members import InterfaceScope, NamedInterface, section_of
@@ -81,15 +81,7 @@ def parse_type(text: str) -> Written:
     opened = text.find("<")
     if opened < 0:
         return Written("".join(text.split()), None, "", pointer, array)
-    depth, closed = 0, -1
-    for at in range(opened, len(text)):
-        if text[at] == "<":
-            depth += 1
-        elif text[at] == ">" and text[at - 1] != "-":
-            depth -= 1
-            if depth == 0:
-                closed = at
-                break
+    closed = closing_angle(text, opened)
     if closed < 0:
         return Written("", None, "", pointer, array)
     inner = tuple(split_at_commas(text[opened + 1 : closed]))

@@ -154,7 +154,7 @@ def is_number(text: str) -> bool:
 @lru_cache(maxsize=100_000)
 def tail(name: str) -> str:
     """The last part of a path or qualified name."""
-    return parts_of(name)[-1] if name else ""
+    return parts[-1] if (parts := parts_of(name)) else ""
 
 
 def around(name: str) -> str:

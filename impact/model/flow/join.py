@@ -9,6 +9,7 @@ from typing import NamedTuple
 from msgspec import structs
 
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.flow import FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
@@ -256,17 +257,13 @@ class Join:
     @cached_method
     def _leads_to(self, fn: Fn) -> frozenset[int]:
         """The functions from which a function may be reached, by their id()."""
-        found: set[int] = set()
-        queue = [fn]
-        while queue:
-            one = queue.pop()
+
+        def above(one: Fn) -> list[Fn]:
             around = self.code.enclosing(one)
             callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
-            for caller in (*callers, *((around,) if around is not None else ())):
-                if id(caller) not in found:
-                    found.add(id(caller))
-                    queue.append(caller)
-        return frozenset(found)
+            return callers if around is None else [*callers, around]
+
+        return frozenset(map(id, walk(above(fn), above)))
 
     def _walked(self, fn: Fn, functions: set[int] | None, depth: int, seen: tuple[int, ...]) -> list[Way]:
         found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]

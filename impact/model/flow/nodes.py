@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.flow import FlowExpr
 from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .endpoints import Sites
@@ -191,13 +192,9 @@ def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterato
 
 def _linked(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:
     yield from sources
-    seen, queue = {name}, list(package.links.get(name, ()))
-    while queue:
-        one = queue.pop()
-        if one not in seen:
-            seen.add(one)
+    for one in walk([name], lambda one: package.links.get(one, ())):
+        if one != name:
             yield from package.libraries.get(one, ())
-            queue.extend(package.links.get(one, ()))
 
 
 def _class(code: FlowCode, name: str, package: str, source: CodeFile | None) -> Cls | None:

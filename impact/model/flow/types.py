@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from ...facts.cpp.names import split_at_commas
+from ...facts.cpp.names import closing_angle, split_at_commas
 
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
@@ -70,15 +70,9 @@ def _template(text: str) -> tuple[str, tuple[str, ...], str]:
         if bracket > 0 and text.endswith("]"):
             return text[:bracket].strip(), tuple(split_at_commas(text[bracket + 1 : -1])), ""
         return text, (), ""
-    depth = 0
-    for at in range(start, len(text)):
-        if text[at] == "<":
-            depth += 1
-        elif text[at] == ">" and text[at - 1] != "-":
-            depth -= 1
-            if depth == 0:
-                return text[:start].strip(), tuple(split_at_commas(text[start + 1 : at])), text[at + 1 :].strip()
-    return text[:start].strip(), tuple(split_at_commas(text[start + 1 :])), ""
+    at = closing_angle(text, start)
+    at = len(text) if at < 0 else at
+    return text[:start].strip(), tuple(split_at_commas(text[start + 1 : at])), text[at + 1 :].strip()
 
 
 _HEADER = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)\.h(?:pp)?\Z")

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
+import msgspec
+
 from ....edges.dispatch import methods_of
 from ...facts.launch.actions import Action, Value, ValuePart, literal
 from ...facts.launch.flow import substitutions
@@ -31,30 +33,24 @@ from .text import (
 )
 
 
-class ActionScope:
+class ActionScope(msgspec.Struct, eq=False):
     """What holds where an action runs. open: how many undecided conditions stood when it began."""
 
-    __slots__ = ("arguments", "constants", "environment", "namespace", "open", "private", "remaps", "settings")
-
-    def __init__(self, arguments: dict[str, LaunchText], environment: dict[str, LaunchText], open_: int):
-        self.arguments = arguments
-        self.environment = environment
-        self.namespace = known("")
-        self.remaps: list[Remap] = []
-        self.settings: list[LaunchParameter | SettingFile] = []
-        self.private: list[Action] = []
-        self.constants: set[str] = set()
-        self.open = open_
+    arguments: dict[str, LaunchText]
+    environment: dict[str, LaunchText]
+    open: int
+    namespace: LaunchText = known("")
+    remaps: list[Remap] = []
+    settings: list[LaunchParameter | SettingFile] = []
+    private: list[Action] = []
+    constants: set[str] = set()
 
     def inner(self, open_: int) -> ActionScope:
         """A copy, whose changes do not reach this one."""
-        scope = ActionScope(dict(self.arguments), dict(self.environment), open_)
-        scope.namespace = self.namespace
-        scope.remaps = list(self.remaps)
-        scope.settings = list(self.settings)
-        scope.private = list(self.private)
-        scope.constants = set(self.constants)
-        return scope
+        return ActionScope(
+            dict(self.arguments), dict(self.environment), open_, self.namespace, list(self.remaps),
+            list(self.settings), list(self.private), set(self.constants),
+        )  # fmt: skip
 
 
 class Rewrite(NamedTuple):

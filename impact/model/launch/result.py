@@ -17,11 +17,9 @@ class LaunchSources(Protocol):
 
     def launch(self, package: str, path: str) -> LaunchFile | None:
         """The facts of a launch file."""
-        ...
 
     def parameters(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a file of parameters."""
-        ...
 
 
 class ShareLine(NamedTuple):

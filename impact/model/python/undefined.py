@@ -48,51 +48,46 @@ def list_undefined(
 
 BESIDE = "."
 """The name that list_siblings() gives to imports."""
-
-
-def list_siblings(
-    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
-) -> Iterator[tuple[str, Import]]:
-    """Imports, in modules of a Python package, of another module of its folder as if it were at the top, which Python 3
-    finds only where the importing file itself is started. files, setup: as above and below. Only of modules that are
-    imported by their package, lazy but for those that an entry point names. The name of each is BESIDE."""
-    if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
-        return  # more folders may be looked into
-    modules, named, imported = _Modules(files, (), ()), set(), set()
-    for path, file in setup:
-        for _, module, *_ in file.entry_points:
-            named.update(file.places_of(posixpath.dirname(path), module))
-    for path, facts in files.items():
-        imported.update(place for item in facts.imports for place in modules.find_named(path, item))
-    for path in sorted(files.keys() & (named | imported)):
-        for item in files[path].imports:
-            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
-                yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in named)
-
-
 UNLISTED = ".."
 """The name that list_unlisted() gives to imports."""
 
 
+def list_siblings(
+    files: Mapping[str, PythonFile], setup: Collection[tuple[str, SetupFile]]
+) -> Iterator[tuple[str, Import]]:
+    """Imports, in modules of a Python package, of another module of its folder as if it were at the top, which Python 3
+    finds only where the importing file itself is started. files, setup: as above. Only of modules that are imported by
+    their package, lazy but for those that starting a program imports. The name of each is BESIDE."""
+    if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
+        return  # more folders may be looked into
+    modules = _Modules(files, (), ())
+    imported = {place for path, facts in files.items() for item in facts.imports for place in modules.named(path, item)}
+    started = modules.list_started(setup)
+    for path in sorted(started | imported):
+        for item in files[path].imports:
+            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
+                yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in started)
+
+
 def list_unlisted(
-    files: Mapping[str, PythonFile], setup: Iterable[tuple[str, SetupFile]]
+    files: Mapping[str, PythonFile], setup: Collection[tuple[str, SetupFile]]
 ) -> Iterator[tuple[str, Import]]:
     """Imports of modules that lie in a Python package which setup() does not install, though it installs the outermost
-    one, each as an import of that package, lazy but for those in files that an entry point names. files, setup: as
-    above. The name of each is UNLISTED."""
+    one, each as an import of that package, lazy but for those that starting a program imports. files, setup: as above.
+    The name of each is UNLISTED."""
     modules = _Modules(files, (), ())
+    started = modules.list_started(setup) if setup else frozenset()
     for path, file in setup:
         folder, listed = posixpath.dirname(path), set(file.packages)
         if not listed or "*" in listed or any(one.startswith(("packages", "arguments")) for one in file.unresolved):
             continue
-        named = {place for _, module, *_ in file.entry_points for place in file.places_of(folder, module)}
         roots = {posixpath.dirname(file.places_of(folder, name)[1]) for name in listed if "." not in name}
         for importer, facts in files.items():
             if posixpath.dirname(importer) in roots or not f"{importer}/".startswith(tuple(f"{r}/" for r in roots)):
                 for item in facts.imports:
-                    owners = {modules.package_of(place, roots) for place in modules.find_named(importer, item)}
+                    owners = {modules.package_of(place, roots) for place in modules.named(importer, item)}
                     for owner in sorted(owners - listed - {""}):
-                        lazy = item.lazy or importer not in named
+                        lazy = item.lazy or not (importer in started or facts.interpreter)
                         yield importer, msgspec.structs.replace(item, module=owner, names=(UNLISTED,), lazy=lazy)
 
 
@@ -203,7 +198,8 @@ class _Modules:
 
     def is_meant_by(self, item: Import) -> bool:
         """Whether an import from a package of another name, all of whose names a module of this one at the same place
-        binds, seems to mean it. Where that module has them from there itself, the other package is one."""
+        binds, seems to mean it. Where that module has them from there itself, or the package imports of the other one
+        what it does not have itself, the other package is one."""
         head, _, rest = item.module.partition(".")
         if not rest or not item.names or head in self._others or head in sys.stdlib_module_names:
             return False
@@ -213,9 +209,27 @@ class _Modules:
                 file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
                 if file is None or any(other.module == item.module for other in file.imports):
                     continue
+                if any(self._is_of_another(other, root) for other in self._imports_of.get(head, ())):
+                    continue
                 if all(f" {name} " in file.bound for name in item.names):
                     return True
         return False
+
+    @cached_property
+    def _imports_of(self) -> dict[str, list[Import]]:
+        """The absolute imports of modules in packages, by the package."""
+        found: dict[str, list[Import]] = {}
+        for item in (item for facts in self._files.values() for item in facts.imports if not item.level):
+            head, dot, _ = item.module.partition(".")
+            if dot:
+                found.setdefault(head, []).append(item)
+        return found
+
+    def _is_of_another(self, item: Import, root: str) -> bool:
+        """Whether what an import asks of another package is not at the same place below a root."""
+        stem = f"{root}/{item.module.partition('.')[2].replace('.', '/')}"
+        file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+        return file is None or not all(f" {name} " in file.bound for name in item.names)
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
@@ -247,13 +261,28 @@ class _Modules:
                     return f"{folder[len(posixpath.dirname(root)) :].lstrip('/').replace('/', '.')}.{item.module}"
         return ""
 
-    def find_named(self, path: str, item: Import) -> Iterator[str]:
+    def named(self, path: str, item: Import) -> Iterator[str]:
         """The files that an import from a package names by their package: the module, or modules among the names."""
         module = self.absolute(path, item) if item.level else item.module
         for stem in self._meant(module) if module else ():
             if stem in self._stems and not stem.endswith("/__init__"):
                 yield self._stems[stem]
             yield from (self._stems[f"{stem}/{name}"] for name in item.names if f"{stem}/{name}" in self._stems)
+
+    def list_started(self, setup: Iterable[tuple[str, SetupFile]]) -> frozenset[str]:
+        """The modules of entry points, and those that are imported, in any case, by them or by scripts."""
+        found: set[str] = set()
+        for path, file in setup:
+            for _, module, *_ in file.entry_points:
+                found.update(self._files.keys() & set(file.places_of(posixpath.dirname(path), module)))
+        waiting = [*found, *(path for path, facts in self._files.items() if facts.interpreter)]
+        while waiting:
+            path = waiting.pop()
+            for item in self._files[path].imports:
+                places = set() if item.lazy or item.conditions else set(self.named(path, item)) - found
+                found |= places
+                waiting.extend(places)
+        return frozenset(found)
 
     def package_of(self, path: str, roots: Collection[str]) -> str:
         """The Python package that a module lies in, below one of these folders; empty for another module."""

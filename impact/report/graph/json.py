@@ -1,6 +1,5 @@
 """The message-flow graph as JSON, see docs/graph.schema.json."""
 
-import json
 from typing import Any
 
 import msgspec
@@ -10,8 +9,8 @@ from ....edges.version import __version__
 from ...model.flow.connections import edges
 from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
 from ...model.flow.select import Selection, endpoints_of
+from ..schemas import SCHEMA, STABLE, generated_schema
 
-SCHEMA = 1
 _LISTS = {
     "publisher": "publishers", "subscriber": "subscribers", "server": "servers", "client": "clients",
     "action server": "action_servers", "action client": "action_clients",
@@ -62,17 +61,11 @@ def schema() -> str:
     )
     parts["Endpoint"]["properties"].pop("role")
     parts["Endpoint"]["required"].remove("role")
-    for part in parts.values():
-        part["description"] = " ".join(part.get("description", "").split())
-        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
-        part.pop("additionalProperties", None)
     text, texts = {"type": "string"}, {"type": "array", "items": {"type": "string"}}
     change = dict.fromkeys(("why", "node", "name", "kind", "role", "path"), text)
     change |= {"change": {"enum": ["added", "removed", "changed"]}, "line": {"type": "integer"}}
     name = {"name": text, "types": texts} | {each: texts for each in _LISTS.values()}
     properties: dict[str, Any] = {
-        "schema": {"const": SCHEMA},
-        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": text, "version": text}},
         "workspace": text,
         "rev": text,
         "ros": {"enum": [1, 2]},
@@ -88,18 +81,11 @@ def schema() -> str:
         "description": "A topic, service or action: its types, and the ids of the nodes that use it, by role.",
         "type": "object", "required": ["name", "types"], "properties": name,
     }  # fmt: skip
-    whole = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": f"rosimpact message-flow graph, schema {SCHEMA}",
-        "description": "What `rosimpact graph --format json` prints. Fields may be added without a new schema number; "
-        "none is removed, renamed or given another meaning. `base` and `changes` are there with --base alone.",
-        "type": "object",
-        "required": list(properties),
-        "properties": properties
-        | {"base": text, "changes": {"type": "array", "items": {"type": "object", "properties": change}}},
-        "$defs": dict(sorted(parts.items())),
-    }
-    return json.dumps(whole, indent=1) + "\n"
+    described = (
+        f"What `rosimpact graph --format json` prints. {STABLE} `base` and `changes` are there with --base alone."
+    )
+    further = {"base": text, "changes": {"type": "array", "items": {"type": "object", "properties": change}}}
+    return generated_schema("message-flow graph", described, properties, parts, further)
 
 
 def _endpoint(endpoint: Endpoint) -> dict[str, Any]:

@@ -26,7 +26,6 @@ from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.surface.offers_cpp import defaults_changed
 from ...targets.symbol import Availability
-from ...targets.target import Target
 from ...targets.version import at_least
 from ..rule import Diagnostic, Text, rule
 from .uses import list_cpp_uses
@@ -51,7 +50,7 @@ def changed_default(view: TargetView, package: Package):
         yield Diagnostic(use.at, use.name, package.name, data, evidence=found.evidence)
 
 
-def _came_lately(target: Target, found: Availability) -> bool:
+def _came_lately(target: DistroTarget, found: Availability) -> bool:
     """Whether a change came after the long-term distro before the target's."""
     earlier = _long_term_before(target.distro)
     version = DistroTarget(earlier).version(found.package) if earlier else None

@@ -102,7 +102,7 @@ def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
         if change.kind == "call-changed" and change.package not in _COMPILER
     }
     refused.update((change.old, (change, None)) for change in view.changes("call-changed"))
-    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.packages}
+    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.may_have}
     for package in view if refused else ():
         yield from rate_upcoming(_list_reviewed_of(view, package, refused))
 
@@ -110,17 +110,18 @@ def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
 def _list_reviewed_of(
     view: TargetView, package: Package, refused: dict[str, tuple[ChangeInForce, Horizon | None]]
 ) -> Iterator[Diagnostic | Upcoming]:
+    uses = [(use, *refused[use.text]) for use in package.digest.uses if use.text in refused]
+    if not uses:
+        return
     # A method that the package or what it is built with declares may be meant wherever its name is called.
     within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
     own = {
         "cpp": {function for each in within for function in each.digest.functions},
         "python": {method for each in within for method in each.digest.methods},
     }
-    for use in package.digest.uses:
-        change, ahead = refused.get(use.text, (None, None))
+    for use, change, ahead in uses:
         if (
-            change is None
-            or function_of(use.text) in own.get(use.language, ())
+            function_of(use.text) in own.get(use.language, ())
             or not view.active(use.conditions)
             or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
             or (ahead is not None and not view.active_on(ahead, use.conditions))

@@ -43,8 +43,10 @@ class IncludedHeaders:
 
     def list_asked(self, package: Package) -> Iterator[tuple[IncludeUse, tuple[Doubt, ...]]]:
         """The includes of a package that the target compiles, with what speaks against an error there. Those of headers
-        that the workspace provides are left out, and those that rules of their own report."""
+        that the workspace provides are left out, and those that rules of their own report; of a package that is made
+        for both generations of ROS also those of files for the other one, unless they are surely compiled here."""
         view = self._view
+        foreign = _list_files_of_other_generation(view, package)
         for include in package.digest.includes:
             path = include.path
             if path in self._quiet or not view.active(include.conditions):
@@ -55,13 +57,21 @@ class IncludedHeaders:
                 self._quiet.add(path)
                 continue
             if versioned_folder(view.target, path) is None:
-                doubts = doubts_of_place(view, include.role, include.conditions)
-                yield include, doubts if include.targets else (*doubts, Doubt.UNCOMPILED)
+                doubts = self._doubts_of(package, include)
+                if not doubts or include.at.path not in foreign:
+                    yield include, doubts
+
+    def _doubts_of(self, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+        doubts = doubts_of_place(self._view, include.role, include.conditions)
+        if not include.targets:
+            return (*doubts, Doubt.UNCOMPILED)
+        compiling = (target for target in package.build.targets if target.name in include.targets)
+        return doubts if any(self._view.certain(t.conditions) for t in compiling) else (*doubts, Doubt.CONDITIONAL)
 
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
         known = path in self._gone or path in self._early or path in self._view.coming
-        if not known and self._view.header(path):
+        if not known and is_answered(self._view, path):
             self._quiet.add(path)
 
     def find_loss(self, package: Package, include: IncludeUse) -> HeaderLoss | None:
@@ -93,12 +103,28 @@ class IncludedHeaders:
         """The reviewed row on a path that the target lacks."""
         view = self._view
         change = self._gone.get(path)
+        if change is not None and change.package in view.workspace.unread_names:
+            return None
         if change is not None and not view.nested_header(change.package, path):
             return change
         change = self._early.get(path)
         if change is None or view.has_released_header(path.partition("/")[0], path):
             return None  # the package that it is called after has it
         return change if view.has_released_header(change.package, path) is False else None
+
+
+# What the C++ files of a generation of ROS include.
+_CLIENT_LIBRARIES = {1: "ros/", 2: "rclcpp/"}
+
+
+def _list_files_of_other_generation(view: TargetView, package: Package) -> frozenset[str]:
+    """The C++ files of a package for both generations that are for the one which the target is not of."""
+    own, other = (_CLIENT_LIBRARIES[ros] for ros in (view.target.ros, 3 - view.target.ros))
+    including = {
+        client: frozenset(i.at.path for i in package.digest.includes if i.path.startswith(client))
+        for client in (own, other)
+    }
+    return including[other] - including[own] if including[own] else frozenset()
 
 
 @kept_with
@@ -132,6 +158,58 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
         return None
     known = view.is_package(generated["package"]) or generated["package"] in view.declared(package)
     return None if known else f"{package.name}/{path.rpartition('/')[2]}"
+
+
+def is_answered(view: TargetView, path: str) -> bool:
+    """Whether somebody may have a header; a package of the workspace has no more than is known of it."""
+    return any(p.sure or p.name not in view.workspace.packages for p in view.header(path))
+
+
+def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
+    """Whether an include names what no file of the workspace is called, no build here makes and nobody is known to
+    have."""
+    path, build = include.path, package.build
+    if not include.targets or not view.certain(include.conditions) or build.unresolved:
+        return False
+    if is_answered(view, path):
+        return False
+    name = path.rpartition("/")[2]
+    if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _file_names(view):
+        return False
+    if any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
+        return False
+    if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
+        return False
+    if view.unknown_contents.may_hold(package, path.lstrip("./")):
+        return False
+    return path.startswith(".") or all(_has_known_headers(view, one) for one in _list_direct(view, package))
+
+
+def _list_direct(view: TargetView, package: Package) -> set[str]:
+    """What a package declares and finds itself."""
+    passed = {one.item for target in package.build.targets for one in target.links if one.how == "ament"}
+    return {*view.declared(package), *(one.name for one in package.build.found), *passed}
+
+
+def _has_known_headers(view: TargetView, name: str) -> bool:
+    """Whether all headers of what has a name are known: a package of the workspace or a released one that a surface is
+    stored of, a library of the platform."""
+    if (own := view.workspace.packages.get(name)) is not None:
+        made = own.build.unresolved or any(t.kind in ("external", "fetched") for t in own.build.targets)
+        return not (made or name.endswith("_vendor"))
+    if name in view.preinstalled or name.startswith("python"):
+        return True
+    if view.is_package(name):
+        return view.offers.package(name) is not None and not view.unknown_contents.is_carried_library(name)
+    keys = (name, *view.debian(name), *(p.package or p.name for p in view.cmake(name)))
+    return view.providers.knows_system(keys)
+
+
+@kept_with
+def _file_names(view: TargetView) -> frozenset[str]:
+    """The names of all files of the workspace."""
+    files = (path for package in view.workspace for path in package.digest.files)
+    return frozenset(path.rpartition("/")[2] for path in files)
 
 
 def _find_other_ending(package: Package, path: str, includer: str) -> str | None:

@@ -65,10 +65,17 @@ def find_interface_fault(view: TargetView, path: str) -> Fault | None:
         fault = Fault("", {}, found) if found is not None else None
     else:
         fault = _find_never_generated(view, path)
+        if fault is None and _GENERATED_HEADER[view.target.ros].match(rest) and _is_nobody(view, head):
+            fault = _find_moved(view, head, rest)
     match = _C_HEADER.match(path) if fault is None and view.target.ros == 2 else None
     if match and _generates_interfaces(view, match["package"]):
         return Fault("c", {"replacement": f"{match['stem']}.hpp"})
     return fault
+
+
+def _is_nobody(view: TargetView, name: str) -> bool:
+    """Whether no package is known by a name, and none of the workspace declares one."""
+    return not (view.is_package(name) or view.private(name) or any(name in view.declared(p) for p in view.everyone()))
 
 
 def _respell(view: TargetView, head: str, rest: str) -> Fault | None:

@@ -33,21 +33,22 @@ from .diagnosis import availability_texts, data_of
 @rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts("include"))
 def moved_header(view: TargetView):
     moved = {
-        c.old: (of_row(Symbol("header", c.old), c), c.kind != "header-removed")
+        c.old: c
         for c in view.changes("header-removed", "header-renamed", "header-moved")
         if c.state == "deprecated" and c.old
     }
-    offered: dict[str, Availability | None] = {}
+    known: dict[str, Availability | None] = {}
     for package in view:
         for include in package.digest.includes:
             path = include.path
-            found, as_it_is = moved.get(path, (None, True))
-            if found is None and path not in offered:
-                offered[path] = _find_deprecated(view, path)
-            found = found or offered[path]
+            change = moved.get(path)
+            if path not in known:
+                known[path] = of_row(Symbol("header", path), change) if change else _find_deprecated(view, path)
+            found = known[path]
             if found is None or not view.active(include.conditions) or view.workspace.provides_header(path):
                 continue
-            fix = respell(view, package, include, found.replacement) if as_it_is else ()
+            removed = change is not None and change.kind == "header-removed"
+            fix = () if removed else respell(view, package, include, found.replacement)
             yield Diagnostic(
                 include.at, path, package.name, data_of(found), "deprecated", fix=fix, evidence=found.evidence
             )

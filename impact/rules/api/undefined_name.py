@@ -4,9 +4,9 @@ What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
     imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
     name, or from a package of an unknown name in place of its own; imports of modules that setup() does not install;
-    modules of a package that import another one of its folder by its bare name; functions of entry points that their module does not define; star imports of a package from
-    itself, which Python 2 took from a module in it; and builtins (`raw_input`,
-    `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
+    modules of a package that import another one of its folder by its bare name; functions of entry points that their
+    module does not define; star imports of a package from itself, which Python 2 took from a module in it; and builtins
+    (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
 
 Why it breaks
     Python raises a NameError, ImportError or AttributeError when it reaches the line.
@@ -35,7 +35,7 @@ from ...model.package import ImportUse
 from ...model.python.undefined import BESIDE, UNLISTED
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ...targets.target import Target
+from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
 from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
 
@@ -88,7 +88,7 @@ def undefined_name(view: TargetView):
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
-    def find(package: Package, target: Target) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
                 yield Refused(use, name.lstrip("."), "python 2", doubts=_doubts_of(use), conditions=use.conditions)

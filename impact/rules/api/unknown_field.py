@@ -3,8 +3,8 @@
 What it does
     Reports fields and constants of messages, services and actions of other packages that the target's release of the
     package has no longer, or not yet; the same for interfaces that Python imports, also from packages of the workspace.
-    Whose field it is, is told by the declared type of the variable, followed through nested messages. Says as well what goes when a dated target's
-    distro is updated.
+    Whose field it is, is told by the declared type of the variable, followed through nested messages. Says as well what
+    goes when a dated target's distro is updated.
 
 Why it breaks
     The compiler stops with "has no member named"; Python raises an AttributeError when the line is reached, on the

@@ -4,7 +4,8 @@ What it does
     Reports `#include` lines whose path no version of anything has: spellings of generated headers that belong to the
     other ROS generation, or to C where rclcpp is used, in another case, or without their folder; generated headers
     whose interface no version of the package has, or another package of the workspace has; own headers with a letter,
-    the case or the ending wrong; configuration headers of dynamic_reconfigure below a name that no package has.
+    the case or the ending wrong; headers that no file of the workspace is called like, where all that the package
+    declares and finds is known; configuration headers of dynamic_reconfigure below a name that no package has.
 
 Why it breaks
     The compiler stops with "No such file or directory".
@@ -30,7 +31,7 @@ from ...model.package import IncludeUse
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
-from .included_headers import find_misspelt, included_headers, is_bridge
+from .included_headers import find_misspelt, included_headers, is_bridge, is_nowhere
 from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
 
 
@@ -38,6 +39,9 @@ from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
     group="removed-header",
     texts={
         **TEXTS,
+        "nowhere": Text(
+            "no file of the workspace and no known package has `{subject}`", "include a header that is there, or add it"
+        ),
         "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
     },
 )
@@ -46,7 +50,11 @@ def unknown_header(view: TargetView, package: Package):
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
         own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
-        if (own is None and fault is None) or headers.find_loss(package, include) is not None:
+        if own is None and fault is None:
+            if is_nowhere(view, package, include):
+                yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
+            continue
+        if headers.find_loss(package, include) is not None:
             continue
         if own is not None:
             doubts = _doubts_of_misspelt(view, package, include)

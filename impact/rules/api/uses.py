@@ -90,6 +90,8 @@ def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
     for use in package.digest.cpp_api:
         if use.package not in near or use.name in own or not view.active(use.conditions):
             continue
+        if use.package in view.workspace.may_have:
+            continue
         head = use.name.partition("::")[0]
         if head != use.package and head in near:
             continue  # a name of that package, which this one took over for a while

@@ -1,24 +1,13 @@
 """Remappings and parameters that launch files set for the nodes they start, line by line."""
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
-from ...model.flow.launches import LaunchedNode
+from ...model.flow.launches import GivenParameter, GivenRemapping, LaunchedNode
 from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 
-
-class LaunchLine(Protocol):
-    """A remapping or parameter at a line of a file."""
-
-    @property
-    def path(self) -> str: ...
-
-    @property
-    def line(self) -> int: ...
-
-
-T = TypeVar("T", bound=LaunchLine)
+T = TypeVar("T", GivenRemapping, GivenParameter)
 
 
 def group_by_line(

@@ -2,14 +2,14 @@
 
 What it does
     Compares the components given to find_package(Boost|Qt5|Qt6|VTK|OpenCV|PCL ... COMPONENTS) with what the target's
-    version of the library has.
+    version of the library has, also in the CMake files that dependants run.
 
 Why it breaks
-    CMake stops at a component that is gone (`signals` since Boost 1.69).
+    CMake stops at a component that is gone (`signals` since Boost 1.69), or not there yet (`json` before 1.75).
 
 Severity
     error when a component that is surely required is gone on the target; warning under a condition that is not known,
-    and when only the newest distro lacks it.
+    when only the newest distro lacks it, and for what dependants look for.
 
 Example
     find_package(Boost REQUIRED COMPONENTS signals)
@@ -18,6 +18,7 @@ Use instead
     find_package(Boost REQUIRED)                # and boost/signals2, which is header-only
 """
 
+from ...model.cmake.build import FoundPackage
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.providers.library import gone_component
@@ -34,9 +35,12 @@ def library_component(view: TargetView, package: Package):
     for found in package.build.found:
         if found.how == "find_package" and view.active(found.conditions):
             yield from _list_gone(view, package, found)
+    for found in package.build.handed_on:
+        if view.active(found.conditions):
+            yield from _list_gone(view, package, found, (Doubt.DISTURBS,))
 
 
-def _list_gone(view: TargetView, package, found):
+def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...] = ()):
     """Components that the target's version of the library, or that of the newest distro, does not have."""
     newest = view.newest
     certain = view.certain(found.conditions)
@@ -46,11 +50,11 @@ def _list_gone(view: TargetView, package, found):
         if later is not None:
             data = {"library": found.name, "version": later.version, "horizon": view.horizon, "advice": later.help}
             doubt = Doubt.UPCOMING if found.required and name != "system" and certain else Doubt.FAR
-            yield Diagnostic(at, name, package.name, data, "upcoming", (doubt,))
+            yield Diagnostic(at, name, package.name, data, "upcoming", (doubt, *besides))
         if gone:
             data = {"library": found.name, "version": gone.version, "advice": gone.help}
             if found.quiet and not found.required:
                 doubts = (Doubt.DISPENSABLE,)
             else:
                 doubts = (found.required or Doubt.OPTIONAL, certain or Doubt.CONDITIONAL)
-            yield Diagnostic(at, name, package.name, data, "gone", doubts)
+            yield Diagnostic(at, name, package.name, data, "gone", (*doubts, *besides))

@@ -35,7 +35,8 @@ from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
 
-_ONCE = (Together("not exported", few=2),)
+_ONCE = (Together("not exported"),)
+_EACH = (Together("not exported", few=3),)
 _ADD = "add `{subject}` to ament_export_dependencies"
 
 
@@ -80,7 +81,7 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
     found = {f.name.lower(): f for f in package.build.found}
     by_target = at_least(view.target.version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
     # A habit of those whose libraries are loaded; whoever links a library stops at each of them.
-    together = _ONCE if is_only_loaded(view, package) else ()
+    together = _ONCE if is_only_loaded(view, package) else _EACH
     for target in exported_targets(package):
         if not view.certain(target.conditions):
             continue
@@ -96,7 +97,9 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             doubts = _doubts_of_passed_on(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
-                yield Diagnostic(link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=_ONCE)
+                yield Diagnostic(
+                    link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=together
+                )
                 continue
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=together)
 

@@ -5,7 +5,11 @@ What it does
     `<member_of_group>rosidl_interface_packages</member_of_group>`.
 
 Why it breaks
-    Packages that depend on the group, such as ros1_bridge, are built before this one and lack its interfaces.
+    rosidl_generate_interfaces() stops where it installs interfaces of a package that is not in the group. Packages that
+    depend on the group, such as ros1_bridge, are built before this one and lack its interfaces.
+
+Severity
+    error; warning for interfaces that are not installed, and before Eloquent.
 
 Example
     <depend>rosidl_default_runtime</depend>
@@ -21,13 +25,16 @@ Not reported
 from ...model.cmake.build import for_tests
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.version import at_least
 from ..rule import Declare, Diagnostic, Doubt, Text, rule
 
 _GROUP = "rosidl_interface_packages"
+# From here on, at the latest, rosidl_generate_interfaces() asks. Source: its CMake code in rosidl_cmake, whose change
+# log has nothing about it since.
+_ASKS = "0.8.0"
 
 
 @rule(
-    severity="warning",
     group="missing-interface-wiring",
     texts=Text(
         "`{package}` generates interfaces but is not a member of their group",
@@ -41,8 +48,9 @@ def missing_interface_group(view: TargetView, package: Package):
         return
     for generated in package.build.generated:
         if generated.how == "rosidl" and view.certain(generated.conditions) and not for_tests(generated.conditions):
-            fix = _join_group(package)
-            yield Diagnostic(generated.at, _GROUP, package.name, doubts=(Doubt.DISTURBS,), fix=fix)
+            stops = generated.installed and at_least(view.target.version("rosidl_cmake") or "0", _ASKS)
+            doubts = (stops or Doubt.DISTURBS,)
+            yield Diagnostic(generated.at, _GROUP, package.name, doubts=doubts, fix=_join_group(package))
             break
 
 

@@ -20,6 +20,7 @@ Not reported
 
 import re
 
+from ....edges.reach import walk
 from ...model.view import TargetView, interface_of
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Insert, Text, rule
@@ -88,16 +89,7 @@ def _find_orders(package) -> dict[str, set[str]]:
         direct.setdefault(target.name, set()).update(
             link.item for link in target.links if link.how in ("order", "link")
         )
-    reached: dict[str, set[str]] = {}
-    for name in direct:
-        seen, stack = set(), [name]
-        while stack:
-            for item in direct.get(stack.pop(), ()):
-                if item not in seen:
-                    seen.add(item)
-                    stack.append(item)
-        reached[name] = seen
-    return reached
+    return {name: set(walk(items, lambda item: direct.get(item, ()))) for name, items in direct.items()}
 
 
 def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:

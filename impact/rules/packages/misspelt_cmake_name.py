@@ -1,12 +1,12 @@
-"""misspelt-cmake-name: the name of a package is misspelt in CMakeLists.txt.
+"""misspelt-cmake-name: the name of a package or library is misspelt in CMakeLists.txt.
 
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
     catkin_package that nobody provides and that are two known names run together, or one edit or a different case away
-    from a name the package declares or finds.
+    from a name the package declares or finds; what a target links that is one edit away from a library of the package.
 
 Why it breaks
-    An unknown package stops this build or a dependant's.
+    An unknown package stops this build or a dependant's; the linker finds no library of an unknown name.
 
 Severity
     error where configuration of the package itself stops, or that of whoever looks for it (exported names run
@@ -24,18 +24,26 @@ Not reported
     known.
 """
 
+import re
+from collections.abc import Iterator
+
 from ...model.cmake.links import stops_at_names
 from ...model.cmake.names import MODULES
-from ...model.misspelling import SpellingIndex, folded
+from ...model.misspelling import SpellingIndex, folded, is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ..rule import Diagnostic, Doubt, Replace, Text, doubts_of_place, rule
+
+_PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
+# Letters of a library's name: shorter ones are alike by chance.
+_SHORTEST = 6
 
 
 @rule(
     texts={
         "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
         "near": Text("no package provides `{subject}`; `{replacement}` is declared", "write `{replacement}`"),
+        "library": Text("`{target}` links `{subject}`, which is no target", "write `{replacement}`"),
     },
 )
 def misspelt_cmake_name(view: TargetView, package: Package):
@@ -66,6 +74,26 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
             fix = (Replace(at.path, at.line, at.column, name, meant),)
             yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
+
+    yield from _list_libraries(view, package)
+
+
+def _list_libraries(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Plain names that targets link, of no target and no known library, and one letter off a library of the package."""
+    targets = package.build.targets
+    names = {name for target in targets for name in (target.name, target.output_name, target.export_name)}
+    libraries = [target.name for target in targets if target.kind == "library" and len(target.name) >= _SHORTEST]
+    found = {name for f in package.build.found for name in (f.name, f.prefix)}
+    for target in targets if libraries and not package.build.unresolved else ():
+        for link in target.links if target.kind in ("executable", "library", "module", "test") else ():
+            name, conditions = link.item, (*target.conditions, *link.conditions)
+            if link.how != "link" or name in names or name in found or not _PLAIN.fullmatch(name):
+                continue
+            meant = [library for library in libraries if is_slip(name, library)]
+            if len(meant) == 1 and view.active(conditions) and not view.cmake(name) and not view.is_package(name):
+                data = {"target": target.name, "replacement": meant[0]}
+                doubts = (not target.static or Doubt.DISTURBS, *doubts_of_place(view, "build", conditions))
+                yield Diagnostic(link.at, name, package.name, data, "library", doubts)
 
 
 def _may_install_any(view: TargetView, meant: str, name: str) -> bool:

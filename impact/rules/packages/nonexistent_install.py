@@ -45,6 +45,7 @@ from .install_rules import list_installing
             "`colcon build --symlink-install` takes `{subject}` for the name of a folder", "write the folder itself"
         ),
         "early": Text("`{subject}` is used before catkin_package() sets it", "call catkin_package() before install()"),
+        "never": Text("`{subject}` is set by catkin_package(), which is never called", "call catkin_package()"),
         "unset": Text(
             "nothing sets `{subject}`, so files are looked for, or installed, in a wrong place",
             "correct the variable's name",
@@ -131,6 +132,11 @@ _OF_CATKIN_PACKAGE = frozenset(
 )
 
 
+def _calls_unknown(package: Package) -> bool:
+    """Whether the package calls a command that nothing known defines, or finds a package that may bring one."""
+    return any(use.kind == "command" and not use.context for use in package.build.uses)
+
+
 def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
@@ -148,8 +154,8 @@ def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
             continue
         kind = "unset, build" if use.name == "CATKIN_BUILD_PREFIX" else "unset"
         if use.name in _OF_CATKIN_PACKAGE:
-            if package.build.catkin_package is None:
+            if package.build.catkin_package is None and (package.build.unresolved or _calls_unknown(package)):
                 continue  # a command that is not known may call it
-            kind = "early"
+            kind = "early" if package.build.catkin_package else "never"
         seen.add(use.name)
         yield Diagnostic(use.at, use.name, package.name, kind=kind)

@@ -1,13 +1,16 @@
-"""refused-cmake-name: CMake rejects the name of a package or target.
+"""refused-cmake-name: CMake rejects the name of a package, target or command.
 
 What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
-    target with the same name, and target names with a slash, including those that ament_python_install_package() makes
-    from its argument.
+    target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
+    project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
+    property of a target whose value is an unset version, commands that are misspelt by a letter, and target names with
+    a slash, including those that ament_python_install_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
-    target with the same name and at a target name with a slash.
+    target with the same name, at what is no target, and at a target name with a slash; catkin_package() and
+    ament_package() stop at another name of the project.
 
 Severity
     error where CMake always stops; warning where CMake may not reach the place, and for packages that are not REQUIRED.
@@ -19,10 +22,17 @@ Use instead
     find_package(manif REQUIRED)
 
 Not reported
-    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that cannot be resolved.
+    Targets of different branches of an if(), and those under if(NOT TARGET ...); names that cannot be resolved, and
+    targets that a command which is not known may add.
 """
 
+from collections.abc import Iterator
+
+from ...model.cmake.build import RefusedName
 from ...model.cmake.conditions import version_key
+from ...model.cmake.interpreter import HANDLERS, WRAPPERS
+from ...model.cmake.names import COMMANDS
+from ...model.misspelling import is_slip
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ...targets.version import at_least
@@ -30,6 +40,9 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 
 # From here on ament_python_install_package() makes custom targets. Source: commit 42b972e of ament_cmake.
 _MAKES_TARGETS = "1.1.0"
+_KNOWN = (COMMANDS, HANDLERS, WRAPPERS)
+# Letters of a command: shorter ones are alike by chance.
+_SHORTEST = 8
 
 
 @rule(
@@ -42,6 +55,23 @@ _MAKES_TARGETS = "1.1.0"
             "declare it in package.xml, and call find_package() with the name of its CMake configuration",
         ),
         "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
+        "command": Text("`{subject}` is no command of CMake or of a known package", "did you mean `{replacement}`?"),
+        "project": Text(
+            "the project is called `{subject}`, but package.xml names the package `{package}`, at which CMake stops",
+            "project({package})",
+        ),
+        "no target": Text("`{subject}` is no target, at which CMake stops", "name a target that the package adds"),
+        "too early": Text(
+            "`{subject}` is used as a target before it is added, at which CMake stops", "add the target first"
+        ),
+        "mixed": Text(
+            "`{subject}` is linked with PUBLIC or PRIVATE and without, at which CMake stops",
+            "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",
+        ),
+        "no value": Text(
+            "`{subject}` is not set, so that a property has no value, at which CMake stops",
+            "give project() a version",
+        ),
         "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),
     },
 )
@@ -55,11 +85,12 @@ def refused_cmake_name(view: TargetView, package: Package):
             doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
             yield Diagnostic(found.at, found.name, package.name, kind=kind, doubts=doubts)
     seen = set()
-    for name, at, conditions in build.repeated:
-        if name not in seen and view.active(conditions):
-            seen.add(name)
-            doubts = doubts_of_place(view, "build", conditions)
-            yield Diagnostic(at, name, package.name, kind="twice", doubts=doubts)
+    for kind, refused in _list_refused(package):
+        if refused.name not in seen and view.active(refused.conditions):
+            seen.add(refused.name)
+            doubts = doubts_of_place(view, "build", refused.conditions)
+            yield Diagnostic(refused.at, refused.name, package.name, {"package": package.name}, kind, doubts)
+    yield from _list_misspelt(view, package)
     refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
     if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
@@ -67,6 +98,33 @@ def refused_cmake_name(view: TargetView, package: Package):
     for name, at, conditions in slashed:
         if "/" in name and "$" not in name and view.active(conditions):
             yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
+
+
+def _list_misspelt(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Calls of commands that are known to nobody, and one letter off one that is."""
+    build, of_packages = package.build, view.providers.commands.get(view.target.ros, {})
+    seen = set()
+    for use in build.uses:
+        if use.kind != "command" or use.name in seen or any(use.name in known for known in (*_KNOWN, of_packages)):
+            continue
+        seen.add(use.name)
+        meant = {name for known in (*_KNOWN, of_packages) for name in known if is_slip(use.name, name)}
+        if len(use.name) >= _SHORTEST and len(meant) == 1 and view.active(use.conditions):
+            complete = not build.unresolved and not view.unknown_contents.list_unknown_found(package)
+            doubts = (*doubts_of_place(view, "build", use.conditions), complete or Doubt.INCOMPLETE)
+            yield Diagnostic(use.at, use.name, package.name, {"replacement": meant.pop()}, "command", doubts)
+
+
+def _list_refused(package: Package) -> Iterator[tuple[str, RefusedName]]:
+    """The names at which the commands stop that are given them, with the kind of text; none that what is not read may
+    make or set."""
+    build = package.build
+    hidden = build.unresolved or any(t.kind in ("external", "fetched") or t.name.endswith("()") for t in build.targets)
+    added = {target.name for target in build.targets if target.kind != "unknown"}
+    for refused in build.refused:
+        early = refused.kind == "no target" and refused.name in added
+        if refused.kind in ("twice", "project", "mixed") or not hidden:
+            yield "too early" if early else refused.kind, refused
 
 
 def _is_of_debian(view: TargetView, package: Package, name: str) -> bool:

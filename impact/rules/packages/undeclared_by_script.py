@@ -45,7 +45,8 @@ def undeclared_by_script(view: TargetView, package: Package):
         reported.add(found.name)
         providers = view.cmake(found.name)
         ros = bool(providers) and all(p.kind == "ros" for p in providers)
-        if not ros or view.answered(providers, closure) or view.unknown_contents.may_come_along(package):
+        own = any(p.name == package.name for p in providers)  # it brings a library that others find by another name
+        if not ros or own or view.answered(providers, closure) or view.unknown_contents.may_come_along(package):
             continue
         name = providers[0].name
         data = {"found": found.name, "manifest": package.digest.manifest_path}

@@ -32,7 +32,8 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        if need.providers[0].kind == "system" and view.unknown_contents.is_likely(package, need.subject):
+        carried = need.providers[0].kind == "system" and need.how != "import"
+        if carried and view.unknown_contents.is_likely(package, need.subject):
             continue
         name = name_to_declare(view, need)
         if name is not None and name != package.name and name not in elsewhere:

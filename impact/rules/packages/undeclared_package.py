@@ -18,8 +18,8 @@ Severity
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
     along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces).
-    note: conditional code, examples, documentation, files that nothing compiles, and all but the first of the imports
-    and launch references of a package with more than two such.
+    note: conditional code, examples, documentation, files that nothing compiles, and all but the first of more than
+    five imports (in ROS 1, of several), or packages that launch files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -39,6 +39,10 @@ from ..rule import Diagnostic, Doubt, Text, Together, rule, severity
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
+_FEW = {1: 1, 2: 5}
+"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
+runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
+
 
 @rule(
     texts={
@@ -51,13 +55,14 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 )
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
-    # Of many things that a package runs with and does not declare, the first is reported, best such as the target has.
+    # Of more things that a package runs with and does not declare, the first is reported, best such as the target has.
     firsts = [(min(needs, key=weight), name) for name, needs in missing.items()]
     firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
     for first, name in firsts:
         doubts = doubts_of_missing(view, package, first, name)
         # Launch files and modules are used one by one, and whoever declares the first looks for the others.
-        at_run_time = () if first.how in (*ASKED, "include") else (Together("run", few=2),)
+        cause = "import" if first.how == "import" and view.target.ros > 1 else "started"
+        at_run_time = () if first.how in (*ASKED, "include") else (Together(cause, few=_FEW[view.target.ros]),)
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable

@@ -28,7 +28,7 @@ Not reported
 import re
 from collections.abc import Iterator, Set
 
-from ...model.cmake.links import may_hide, package_of
+from ...model.cmake.links import may_hide, package_of, reached_targets
 from ...model.view import TargetView
 from ...model.workspace import Package
 from ..rule import Diagnostic, Doubt, Text, rule
@@ -50,7 +50,8 @@ def ungiven_package(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
     everywhere |= {package_of(link.item) for link in package.build.links}
-    found = {f.name for f in package.build.found} - {package.name}
+    all_found = {f.name for f in package.build.found}
+    found = all_found - {package.name}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     seen = set()
@@ -84,7 +85,7 @@ def ungiven_package(view: TargetView, package: Package):
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
-                if view.unknown_contents.list_unknown(frozenset(given & view.declared(package).keys())):
+                if view.unknown_contents.list_unknown(frozenset(given & (view.declared(package).keys() | all_found))):
                     items = None  # what one of them brings is not known
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)
@@ -161,17 +162,8 @@ def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
 def _find_given(targets, name: str) -> set[str] | None:
     """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
     items: set[str] = set()
-    stack, seen = [name], set()
-    while stack:
-        target = targets.get(stack.pop())
-        if target is None or target.name in seen:
-            continue
-        seen.add(target.name)
+    for target in reached_targets(targets, [name]):
         if target.kind in ("unknown", "external", "fetched"):
             return None
-        if target.alias_of:
-            stack.append(target.alias_of)
-        for link in target.links:
-            items.add(link.item)
-            stack.append(link.item)
+        items.update(link.item for link in target.links)
     return items

@@ -56,8 +56,8 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
             "{how}",
         ),
         "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
+        "node": Text("`{subject}` is a node, but no rule installs it", "{how}"),
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
-        "alone": Text("`{subject}` is a node, but the package installs no program", "{how}"),
     },
 )
 def uninstalled_file(view: TargetView):
@@ -166,37 +166,38 @@ def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
             return
 
 
+# Folders where programs of packages lie, and modules that programs import to be nodes.
+_OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
+_OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
+
+
 def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
     """Scripts that no rule installs: those that a launch file starts, that lie beside programs which are installed, or
-    that are the nodes of a package without other programs."""
+    that are nodes: of ROS 2, which starts none from the source space, or of a package without other programs."""
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
-    alone = _list_lone_scripts(package, installs)
+    nodes = _list_nodes(package, installs)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     for path in (*package.digest.scripts, *package.digest.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
-        lone = path in alone
-        if (name in scripts or beside or lone) and name not in others and not is_installed(package, installs, path):
+        node = path in nodes
+        if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
-            kind = "script" if name in scripts else "beside" if beside else "alone"
+            kind = "script" if name in scripts else "beside" if beside else "node"
             yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)
 
 
-_OF_SCRIPTS = frozenset({"bin", "nodes", "scripts"})
-
-
-def _list_lone_scripts(package, installs) -> frozenset[str]:
-    """The nodes in Python of a package that makes and installs no program at all, though it installs other things.
+def _list_nodes(package, installs) -> frozenset[str]:
+    """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
+    source space starts them as well, those of a package that makes and installs no program at all.
     catkin_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
     """
     made = any(t.kind == "executable" for t in package.build.targets)
-    if made or not installs or any(i.kind == "programs" or i.executable for i in installs):
+    has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
+    if not installs or (has_programs and package.build.ament_package is None):
         return frozenset()
-    nodes = {use.at.path for use in package.digest.imports if use.module.split(".")[0] in _OF_NODES}
+    nodes = {use.at.path for use in package.digest.imports if use.module.partition(".")[0] in _OF_NODES}
     inside = {path: path[len(package.path) :].lstrip("/") for path in package.digest.scripts if path in nodes}
-    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_SCRIPTS and role_of_folder(i) is None)
-
-
-_OF_NODES = frozenset({"rclpy", "rospy", "rqt_gui"})
+    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and role_of_folder(i) is None)

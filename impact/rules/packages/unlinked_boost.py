@@ -21,8 +21,8 @@ Use instead
     target_link_libraries(logger Boost::filesystem)
 
 Not reported
-    Headers that need no library in the target's version; targets that are given something that cannot be seen;
-    components that are not asked for where a part of the package's CMake cannot be read.
+    Headers that need no library in the target's version, or of which the package uses nothing; targets that are given
+    something that cannot be seen; components that are not asked for where a part of the package's CMake cannot be read.
 """
 
 from collections.abc import Iterator, Set
@@ -77,6 +77,8 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
     for include in package.digest.includes:
         component = compiled_component(include.path, boost)
         if component is None or component in seen or include.role == "aside" or not view.certain(include.conditions):
+            continue
+        if include.idle:
             continue
         for name in include.targets:
             if name not in targets or not view.certain(targets[name].conditions):

@@ -3,7 +3,7 @@
 What it does
     Reports programs and shared libraries whose sources include a header of the package and use a function of a class in
     it that is defined in a source of another target (`arm.hpp` and `arm.cpp`), where the target neither compiles that
-    source nor links a target that does, directly or indirectly.
+    source nor links a target that does, directly or indirectly; no target may compile it at all.
 
 Why it breaks
     The linker reports undefined references for programs. A shared library is linked without an error, and fails where a
@@ -17,14 +17,17 @@ Use instead
     target_link_libraries(wave arm)
 
 Not reported
-    Static libraries; libraries that other targets of the package always link together with the defining one; targets
-    that link something whose value is unknown; functions that another class may have.
+    Static libraries; sources that nothing compiles, where the target links libraries that are not known; libraries that
+    other targets of the package always link together with the defining one; targets that link something whose value is
+    unknown; functions that another class may have.
 """
+
+from collections.abc import Collection
 
 from ...model.cmake.links import linked_items
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..rule import Diagnostic, Doubt, Text, Together, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 
 
@@ -72,13 +75,25 @@ def unlinked_own_library(view: TargetView, package: Package):
             if not definers.isdisjoint(reached) or any(plain(n) in plain(i) for n in libraries for i in items):
                 continue
             users = [given for given in links.values() if given is not None and name in given]
-            if users and not any(definers.isdisjoint(given) for given in users):
+            if definers and users and not any(definers.isdisjoint(given) for given in users):
                 continue  # whatever links this target links the definer too
+            if not definers and any(_is_elsewhere(item, targets, known) for item in items):
+                continue  # a library that somebody else built may have what is not compiled here
             seen.add((name, other))
             data = {"target": name, "function": function}
             tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)
             doubts = (Doubt.INCOMPLETE, not tested or view.target.ros == 2 or Doubt.TEST)
             subject = libraries[0] if libraries else other[len(package.path) :].lstrip("/")
             kind = "library" if libraries else "source"
-            yield Diagnostic(target.at, subject, package.name, data, kind, doubts)
+            yield Diagnostic(target.at, subject, package.name, data, kind, doubts, together=(Together(other),))
             break
+
+
+_OF_SYSTEM = frozenset(("pthread", "-lpthread", "-pthread", "m", "dl", "rt", "stdc++fs"))
+
+
+def _is_elsewhere(item: str, targets: Collection[str], known: Collection[str]) -> bool:
+    """Whether what is linked is a library that was built elsewhere, and that no package brings which CMake finds."""
+    if item in targets or item in known or item in _OF_SYSTEM or "$" in item:
+        return False
+    return item.partition("::")[0] not in known

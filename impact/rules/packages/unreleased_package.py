@@ -51,6 +51,8 @@ def unreleased_package(view: TargetView):
                 continue
             if not target.ever_released(name) or view.private(name) or view.successor(name):
                 continue
+            if view.unknown_contents.is_of_submodule(name):
+                continue
             if dependency.condition and not view.active_manifest(dependency.condition):
                 continue
             seen.add(name)

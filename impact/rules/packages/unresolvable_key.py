@@ -63,7 +63,8 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "remove it, correct the name, or add it to `[workspace] private` in rosimpact.toml",
         ),
         "python 2": Text(
-            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3", "declare `{replacement}`"
+            "`{subject}` installs a module of Python 2, but {platform} runs ROS with Python 3",
+            "declare `{replacement}`",
         ),
         "pip": Text(
             "rosdep installs `{subject}` with pip alone, so bloom cannot release `{package}` as a Debian package",
@@ -88,7 +89,7 @@ def unresolvable_key(view: TargetView, package: Package):
         if dependency.condition and not view.active_manifest(dependency.condition):
             continue
         seen.add(name)
-        if view.private(name):
+        if view.private(name) or view.unknown_contents.is_of_submodule(name):
             continue
         at = view.manifest_place(package, dependency)
         resolution = target.resolve(name)
@@ -165,21 +166,23 @@ def _find_reworded(view: TargetView, name: str) -> str:
     words, found = name.split("_"), []
     for other in view.workspace.packages:
         pairs = [pair for pair in zip(words, other.split("_"), strict=False) if pair[0] != pair[1]]
-        if len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1:
-            if posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
-                found.append(other)
+        alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
+        if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
+            found.append(other)
     return found[0] if len(found) == 1 else ""
 
 
 def _parts_of(view: TargetView, name: str) -> list[str]:
-    """Released packages that are called after a name, two at least, of the repository of that name."""
+    """Released packages that are called after a name, two at least, where all are of one repository, or its name is
+    that."""
     if len(name) < 4:
         return []
     names, start = _in_order(view.target.released_names()), name + "_"
     first = bisect_left(names, start)
     # `_` is followed by a backquote.
-    alike = names[first : bisect_left(names, name + "`", first)]
-    found = [n for n in alike if view.available(n) and _plain_repository(view, n) == name]
+    alike = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    homes = {n: _plain_repository(view, n) for n in alike}
+    found = [n for n in alike if homes[n] == name] if len(set(homes.values())) > 1 else alike
     return found if len(found) > 1 else []
 
 

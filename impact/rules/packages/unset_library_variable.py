@@ -95,8 +95,9 @@ def _list_unset(view: TargetView, package):
         known = module or (stem if view.cmake(stem) else "")
         if not known:
             continue
-        hidden = view.unknown_contents.may_hold(package, stem)
-        doubts = (*_doubts(view, package, use.name, module, stem), not hidden or Doubt.INCOMPLETE)
+        if view.unknown_contents.may_hold(package, stem):
+            continue
+        doubts = _doubts(view, package, use.name, module, stem)
         data = {"variable": use.name, "stem": stem}
         yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 

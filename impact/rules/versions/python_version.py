@@ -28,7 +28,7 @@ from collections.abc import Iterator
 from ...facts.python.source import NO_PYTHON
 from ...model.view import TargetView
 from ...model.workspace import Package
-from ...targets.target import Target
+from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 
@@ -55,7 +55,7 @@ from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
     },
 )
 def python_version(view: TargetView):
-    def find(package: Package, target: Target) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         reported = set()
         for use in package.digest.syntax:
             if use.needs == 2 and use.at.path not in reported:

@@ -26,8 +26,8 @@ from collections.abc import Iterator
 
 from ...model.view import TargetView
 from ...model.workspace import Package
+from ...targets.distro.distro import DistroTarget
 from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
-from ...targets.target import Target
 from ..python_files import Refused, report_refused
 from ..rule import Doubt, Text, rule
 
@@ -41,7 +41,7 @@ from ..rule import Doubt, Text, rule
     ),
 )
 def removed_python_module(view: TargetView):
-    def find(package: Package, target: Target) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         for item in package.digest.imports:
             if not view.certain(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
                 continue

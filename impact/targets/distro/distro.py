@@ -19,10 +19,11 @@ import msgspec
 
 from ....edges.console import UserError
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
-from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution, Target
+from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
 from ..version import number_of
 from .conda import CHANNELS, libraries_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
@@ -86,16 +87,28 @@ def _read_released(data: Snapshot, distro: int, cut: int) -> Mapping[str, _Relea
     return found
 
 
-class DistroTarget(Target):
-    """A distro at a date, with overrides.
+@functools.lru_cache(maxsize=20_000)
+def _read_entries(entries: str) -> tuple[tuple[str, ReleasedDependency], ...]:
+    """What a stored manifest declares, each with its condition; few of them differ between distros."""
+    found = []
+    for line in entries.splitlines():
+        name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
+        pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
+        found.extend((condition, ReleasedDependency(name, KINDS[letter], pairs)) for letter in letters)
+    return tuple(found)
+
+
+class DistroTarget:
+    """A target: what another developer or a robot has. A distro at a date, with overrides.
 
     distro: its name. date: ISO day, None for the newest day of the data. platform: `ubuntu jammy`, None for the
     distro's main one at that date. versions: versions that differ on this machine, by ROS package or platform library;
     an empty text means "not installed". name: what to call the target, by default as it was asked for. rules: rosdep
     rules of one's own by key, as in a rosdep file; they go over the public ones.
 
-    Raises TargetError for an unknown distro or a malformed date. Further attributes: end_of_life (ISO day, empty when
-    none is set), lts, python_major, data_date.
+    Raises TargetError for an unknown distro or a malformed date. Further attributes: ros (1 or 2), python_major (2 or
+    3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the first release),
+    approximate (True before the first sync tag), end_of_life (ISO day, empty when none is set), lts.
     """
 
     def __init__(
@@ -138,6 +151,7 @@ class DistroTarget(Target):
         return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
 
     def identity(self) -> str:
+        """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
         return repr((self._asked, *known, snapshots.data_stamp()))
 
@@ -215,6 +229,7 @@ class DistroTarget(Target):
 
     @cached_method
     def version(self, package: str) -> str | None:
+        """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
@@ -237,6 +252,7 @@ class DistroTarget(Target):
         return self._data.names("library")
 
     def ever_released(self, package: str) -> bool:
+        """True when any distro at any date has released a package of this name."""
         return package in self._data.names("package")
 
     def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
@@ -312,7 +328,7 @@ class DistroTarget(Target):
         return (row[0], row[1] or "", row[2] or "") if row else None
 
     @cached_property
-    def knows_manifests(self) -> bool:  # type: ignore[override]
+    def knows_manifests(self) -> bool:
         row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
         return row is not None
 
@@ -325,14 +341,7 @@ class DistroTarget(Target):
         manifest = self._manifest(package)
         if manifest is None:
             return None
-        found = []
-        for line in manifest[0].splitlines():
-            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
-            if condition and not self.holds(condition):
-                continue
-            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
-            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
-        return tuple(found)
+        return tuple(found for condition, found in _read_entries(manifest[0]) if not condition or self.holds(condition))
 
     def _manifest(self, package: str) -> tuple[str, str] | None:
         version = self.version(package)
@@ -480,20 +489,17 @@ class DistroTarget(Target):
         The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
         """
         wanted = frozenset(kinds)
-        seen: set[str] = set()
-        waiting = [package]
-        while waiting:
-            for dependency in self.dependencies(waiting.pop()) or ():
-                if dependency.kind in wanted and dependency.name not in seen:
-                    seen.add(dependency.name)
-                    waiting.append(dependency.name)
-        seen.discard(package)
-        return frozenset(seen)
+
+        def along(name: str) -> Iterable[str]:
+            return (dependency.name for dependency in self.dependencies(name) or () if dependency.kind in wanted)
+
+        return frozenset(walk([package], along)) - {package}
 
     # rosdep keys
 
     @cached_method
     def resolve(self, key: str) -> Resolution | None:
+        """The rosdep rule for a key on this platform, None when there is none."""
         os_name, release = split_platform(self.platform)
         found = self._resolve(key, os_name, release, self._rule_ts)
         if found is None and self.end_of_life and self.end_of_life < self.date:
@@ -516,12 +522,15 @@ class DistroTarget(Target):
         return None
 
     def known_key(self, key: str) -> bool:
+        """True when rosdep has, or had, a key of this name for any platform."""
         return key in self._rules or key in self._data.names("rule", "key")
 
     def has_rosdep_rules(self) -> bool:
+        """True when rosdep knows the platform's operating system, so that a key without a rule cannot be installed."""
         return split_platform(self.platform)[0] in systems_of_rosdep(self._data) or bool(self._rules)
 
     def keys_instead(self, key: str) -> tuple[str, ...]:
+        """rosdep keys that install here what a key installs on other releases, best first."""
         asked = "SELECT rule FROM rule WHERE key = ? AND os IN ('debian', 'ubuntu') ORDER BY ts DESC"
         rules = [decode_rule(rule) for (rule,) in self._data.rows(asked, (key,))]
         packages = dict.fromkeys(name for rule in rules for name in texts_of(rule))
@@ -590,13 +599,14 @@ class DistroTarget(Target):
         }
 
     @property
-    def python(self) -> int:  # type: ignore[override]
+    def python(self) -> int:
         """Minor version of the Python 3 that ROS code runs on; 0 on Python 2 (python_major 2) and where not known."""
         if self.python_major == 2:
             return 0
         return python_minor(self.library("python")) or 0
 
     def library(self, name: str) -> str | None:
+        """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
         wanted = library_name(name)
         if wanted in self._own_libraries:
             return self._own_libraries[wanted] or None
@@ -642,6 +652,7 @@ class DistroTarget(Target):
                 del _tables[next(iter(_tables))]
 
     def availability(self, symbol: Symbol) -> Availability:
+        """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
         return self._availabilities.on_horizon(symbol)
 
     @cached_property
@@ -651,6 +662,7 @@ class DistroTarget(Target):
         return Availabilities(self)
 
     def changes(self) -> ChangeTable:
+        """Known upstream changes that are in force here, deprecations included."""
         if not self.has_changes():
             from ..changes import changes_in_force
 

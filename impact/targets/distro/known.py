@@ -70,9 +70,9 @@ def _known_distros(data: Snapshot) -> tuple[KnownDistro, ...]:
     return tuple(sorted(found, key=lambda known: known.released))
 
 
-def releases(package: str, data: Snapshot | None = None) -> frozenset[tuple[int, str]]:
+def releases(package: str) -> frozenset[tuple[int, str]]:
     """(ROS generation, version) of every release of a package in any distro."""
-    rows = (data or snapshots.default()).rows(
+    rows = snapshots.default().rows(
         "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
         " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
         " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",

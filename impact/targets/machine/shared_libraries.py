@@ -7,11 +7,11 @@ import os
 import re
 from collections.abc import Container, Mapping
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from ...facts import elf
 from ...facts.elf import AskedSymbolVersions, Elf, stem_and_version
-from ..target import Target
+from ..distro.distro import DistroTarget
 from ..version import compare
 from .loader import Loader
 from .sonames import Sonames
@@ -37,8 +37,10 @@ class Lost(NamedTuple):
     more: int
 
 
-class Shelf(Protocol):
-    """Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
+class Shelf:
+    """The libraries of a machine, real or described.
+
+    Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
     since it was built with), nothing (says that there is no such library at all), machine (`EM_X86_64`,
     empty where any may be), platform (`ubuntu jammy`)."""
 
@@ -51,31 +53,31 @@ class Shelf(Protocol):
 
     def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
         """Whether a library is there for a file that lies in a folder, None when it is not known."""
-        ...
+        raise NotImplementedError
 
     def instead(self, soname: str) -> str:
         """What is there of the library in other versions, in words; empty when nothing is."""
-        ...
+        raise NotImplementedError
 
     def package(self, soname: str) -> str:
         """The Debian package of a library that is not installed and can be; empty where none is known."""
-        ...
+        return ""
 
     def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
-        ...
+        raise NotImplementedError
 
     def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
         """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
         not known. own: the files that are installed with it, by name."""
-        ...
+        return None
 
 
 # How symbols begin that only the library of a class has: constructors, destructors, its table of virtual functions.
 _OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
 
 
-class MachineShelf:
+class MachineShelf(Shelf):
     """This machine."""
 
     name, gone, nothing = "this machine", True, "this machine has no such file"
@@ -125,13 +127,17 @@ class MachineShelf:
         return tuple(Lost(names[0], owner, len(names) - 1) for owner, names in found.items())
 
 
-class DescribedShelf:
+class DescribedShelf(Shelf):
     """A machine that is described: the packages of its platform, and those of its ROS distro."""
 
     machine, gone = "", False
 
     def __init__(
-        self, target: Target, sonames: Sonames, own: Container[str] = frozenset(), near: Container[str] = frozenset()
+        self,
+        target: DistroTarget,
+        sonames: Sonames,
+        own: Container[str] = frozenset(),
+        near: Container[str] = frozenset(),
     ):
         """own: libraries of underlays that go with the workspace. near: libraries of prefixes on this machine, which
         tell that ROS packages bring them, and not in which version they are elsewhere."""
@@ -163,9 +169,6 @@ class DescribedShelf:
         there = self._described.library(library) if library else None
         return others or (f"{library} {there}" if there else "")
 
-    def package(self, soname: str) -> str:
-        return ""
-
     def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         found = []
         for name in asked.versions:
@@ -174,9 +177,6 @@ class DescribedShelf:
             if limit and re.fullmatch(r"[\d.]+", version) and compare(version, limit) > 0:
                 found.append(Lack(name, f"{kind}_{limit}"))
         return tuple(found)
-
-    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
-        return None
 
     @cached_property
     def _reach(self) -> dict[str, str]:

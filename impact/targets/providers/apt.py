@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ..platform import neighbours
 from ..snapshot import DATA, read_table
 
@@ -60,13 +61,8 @@ class Apt:
             for other, bits in others:
                 if bits & mask:
                     back.setdefault(other, []).append(place)
-        waiting = [place for name in packages if (place := self._place.get(name)) is not None]
-        found = set(waiting)
-        while waiting:
-            fresh = [place for place in back.get(waiting.pop(), ()) if place not in found]
-            found.update(fresh)
-            waiting += fresh
-        return packages.union(self._graph.packages[place] for place in found)
+        places = [place for name in packages if (place := self._place.get(name)) is not None]
+        return packages.union(self._graph.packages[place] for place in walk(places, lambda one: back.get(one, ())))
 
     def _brought_by(self, package: str) -> Iterator[str]:
         yield package
@@ -76,12 +72,8 @@ class Apt:
         start = self._place.get(package)
         if start is None:
             return
-        brings, found, waiting = self._graph.brings, {start}, [start]
-        while waiting:
-            for other, bits in brings.get(waiting.pop(), ()):
-                if bits & self._mask and other not in found:
-                    found.add(other)
-                    waiting.append(other)
+        brings, mask = self._graph.brings, self._mask
+        found = set(walk([start], lambda one: (other for other, bits in brings.get(one, ()) if bits & mask)))
         if self._inferred:
             # What was read off lists of files is complete as it is, and following it would add up its errors.
             found.update(other for other, bits in brings.get(start, ()) if bits & INFERRED)

@@ -25,9 +25,9 @@ from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
 if TYPE_CHECKING:
     from ...conditions import Environment
     from ...facts.condition import Condition
+    from ..distro.distro import DistroTarget
     from ..surface.includes import Included
     from ..surface.store import Surfaces
-    from ..target import Target
 
 
 class IncludesTable(msgspec.Struct, frozen=True):
@@ -420,7 +420,7 @@ class HeadersOfMachine:
         return self._reach.bits(headers)
 
 
-def machine(target: Target) -> HeadersOfMachine:
+def machine(target: DistroTarget) -> HeadersOfMachine:
     """The headers that a target has."""
 
     def version(name: str, library: bool) -> str | None:
@@ -442,7 +442,7 @@ def machine_of(distro: str, ros: int, data: Includes | None = None) -> HeadersOf
 
 
 @cache
-def _packages_of(distro: str) -> Target:
+def _packages_of(distro: str) -> DistroTarget:
     from ..distro.distro import DistroTarget
 
     return DistroTarget(distro)

@@ -34,16 +34,6 @@ NEAREST = 4
 _NAMED = ("cmake_names", "targets", "unknown")
 
 
-class Linking(NamedTuple):
-    """How a header's library is linked. compiled: its package has something to link; libraries: that, without `lib`.
-    names: CMake packages and targets, pkg-config files and variables that bring it."""
-
-    library: str
-    compiled: bool
-    libraries: tuple[str, ...]
-    names: tuple[str, ...]
-
-
 class Including(NamedTuple):
     """What a header of a version of a library includes."""
 
@@ -202,30 +192,6 @@ class SystemLibraries:
         return tuple(self._first("SELECT roots FROM package WHERE name = ?", library).split())
 
     @cached_method
-    def linking(self, header: str, platform: str) -> Linking | None:
-        """How to link the library of a header; None where it is of no library that was read, or a release of it was
-        not. Of several versions the platform's counts, or the one that is nearest."""
-        library = self.of_header(header)
-        version = next(filter(None, self.around(library, platform)), "") if library else ""
-        build = self.build(library, version) if version else None
-        if build is None:
-            return None
-        states = (self._state(library, version, path) for path in _written(header, build.include_dirs))
-        stored = next(filter(None, states), None)
-        if stored is None:
-            return None
-        libraries = tuple(stored[1].links.split())
-        mine = set(libraries)
-        configs = (one.split(" ") for one in build.pkgconfig)
-        names = (
-            *build.cmake_names,
-            *(target.name for target in build.targets),
-            *(name for name, *stems in configs if mine.intersection(stems)),
-            *build.variables,
-        )
-        return Linking(library, bool(libraries), libraries, names)
-
-    @cached_method
     def folder(self, header: str) -> str:
         """The folder below the system's include folder that a header lies in, so that compilers find it only where they
         are told to look there; empty where its path leads to it, or it is of no library that was read."""
@@ -239,8 +205,25 @@ class SystemLibraries:
         library = self._first("SELECT library FROM target WHERE name = ?", name)
         if not library:
             return None
+        return self._presence(library, platform, version_of, lambda build: _exports(build, name))
+
+    def configuration(
+        self, library: str, name: str, platform: str, version_of: Callable[[str], str | None]
+    ) -> Presence | None:
+        """The same of a CMake package of a library; None where no version has it."""
+        found = self._presence(library, platform, version_of, lambda build: name in build.cmake_names)
+        builds = (self.build(library, version, _NAMED) for version in self.versions(library).values())
+        return found if any(build is not None and name in build.cmake_names for build in builds) else None
+
+    def _presence(
+        self,
+        library: str,
+        platform: str,
+        version_of: Callable[[str], str | None],
+        has: Callable[[BuildSurface], bool | None],
+    ) -> Presence:
         versions = dict.fromkeys(self.versions(library).values())
-        told = {one: _exports(build, name) for one in versions if (build := self.build(library, one, _NAMED))}
+        told = {one: has(build) for one in versions if (build := self.build(library, one, _NAMED))}
         exact = version_of(library)
         before, after = (exact, exact) if exact in told else self.around(library, platform)
         states = {told.get(version) for version in (before, after) if version}

@@ -3,8 +3,9 @@
 import re
 from typing import NamedTuple
 
-from ..target import Target
+from ..distro.distro import DistroTarget
 from ..version import at_least, parts
+from .libraries import system_libraries
 
 # Boost libraries that are linked against. Source: Boost's "Getting Started", section "Header-Only Libraries".
 BOOST_COMPILED = frozenset({
@@ -140,14 +141,17 @@ _GONE = (
 )
 
 
-def gone_component(target: Target, package: str, component: str) -> Gone | None:
-    """Whether a component of a CMake package is gone on a target, None when it is there or not known."""
+def gone_component(target: DistroTarget, package: str, component: str) -> Gone | None:
+    """What a target's version of a CMake package lacks of its components, None when it is there or not known."""
     for row in _GONE:
         if row.package == package and row.component == component:
             version = target.library(row.library)
             if version and at_least(version, row.gone_in):
                 return Gone(version, row.help)
-    return None
+    # The configuration of Boost finds one for each component, `boost_json`.
+    library = _LIBRARY_OF.get(package, "")
+    found = system_libraries().configuration(library, f"{library}_{component}", target.platform, target.library)
+    return Gone(target.library(library) or found.version, "") if found is not None and found.here is False else None
 
 
 class VersionAnswer(NamedTuple):
@@ -182,7 +186,7 @@ _LIBRARY_OF = {
 _SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
 
 
-def satisfies(target: Target, package: str, request: str, exact: bool) -> VersionAnswer | None:
+def satisfies(target: DistroTarget, package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
     if package not in _LIBRARY_OF and target.version(package) is not None:
         return None  # a released package's own
@@ -255,7 +259,7 @@ _STANDARDS = (
 )  # fmt: skip
 
 
-def needed_standard(target: Target, include: str) -> NeededStandard | None:
+def needed_standard(target: DistroTarget, include: str) -> NeededStandard | None:
     """The C++ standard that an include path needs on a target, None when nothing is known."""
     for row in _STANDARDS:
         if include.startswith(row.prefix):
@@ -265,7 +269,7 @@ def needed_standard(target: Target, include: str) -> NeededStandard | None:
     return None
 
 
-def default_standard(target: Target) -> int | None:
+def default_standard(target: DistroTarget) -> int | None:
     """Year of the C++ standard that the target's compiler takes by default (1998, 2014, 2017), None when not known.
 
     Source: GCC's documentation of -std: gnu++98 before 6, gnu++14 from 6, gnu++17 from 11.
@@ -299,7 +303,7 @@ _EXACT = (
 )
 
 
-def not_answering(target: Target, package: str) -> str:
+def not_answering(target: DistroTarget, package: str) -> str:
     """The target's version of a library whose CMake package does not answer to this spelling of its name; empty where
     it does, or nothing is known."""
     for row in _EXACT:
@@ -354,7 +358,7 @@ class Folder(NamedTuple):
     path: str
 
 
-def versioned_folder(target: Target, path: str) -> Folder | None:
+def versioned_folder(target: DistroTarget, path: str) -> Folder | None:
     """The folder of a version in an include path; None where there is none, or the library's version is not known."""
     found = _FOLDER.match(path)
     if found is None or found.lastgroup is None:

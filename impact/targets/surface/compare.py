@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.interface import PRIMITIVES, Field, Section, full_name
 from ...facts.parameters import mentions
 from ...facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
@@ -72,17 +73,10 @@ class RepositorySurfaces:
     def mentioned(self, package: str) -> frozenset[str] | None:
         """The names that the sources of a package mention, and those of the packages of this state that come along
         with it; None where they are not known."""
-        found: set[str] | None = set()
-        seen: set[str] = set()
-        todo = [package]
-        while todo and found is not None:
-            surface = self.surfaces.get(name := todo.pop())
-            if surface is None or name in seen:
-                continue
-            seen.add(name)
-            todo += surface.runs_with
-            found = None if surface.mentioned is None else found.union(surface.mentioned)
-        return None if found is None else frozenset(found)
+        known = self.surfaces
+        along = walk([package], lambda name: known[name].runs_with if name in known else ())
+        mentioned = [known[name].mentioned for name in along if name in known]
+        return None if None in mentioned else frozenset().union(*filter(None, mentioned))
 
     @cached_method
     def python(self, package: str) -> SurfaceNames:
@@ -91,19 +85,14 @@ class RepositorySurfaces:
 
     def includes(self, header: str) -> set[str]:
         """Headers of this state that a header includes, itself among them, over any number of steps."""
-        seen: set[str] = set()
-        todo = [header]
-        while todo:
-            path = todo.pop()
-            known = self.headers.get(path)
-            if path in seen or known is None:
-                continue
-            seen.add(path)
-            if known[1] is not None:
-                beside = posixpath.dirname(path)
-                for include in known[1].includes:
-                    todo += [include.path, posixpath.normpath(posixpath.join(beside, include.path))]
-        return seen
+
+        def inner(path: str) -> Iterator[str]:
+            _, surface = self.headers.get(path, ("", None))
+            for include in surface.includes if surface is not None else ():
+                yield include.path
+                yield posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path))
+
+        return self.headers.keys() & walk([header], inner)
 
     def resolve(self, type_: str, scope: str) -> str | None:
         """The class of this state that a type means in a scope; None for one that is not there."""
@@ -218,16 +207,8 @@ def compare_states(before: RepositorySurfaces, after: RepositorySurfaces) -> dic
 
 def _reaches(new: Surface, package: str, after: RepositorySurfaces) -> bool:
     """Whether whoever uses a package also gets another one through it."""
-    seen: set[str] = set()
-    todo = [new.package]
-    while todo:
-        name = todo.pop()
-        if name == package:
-            return True
-        if name not in seen and name in after.surfaces:
-            seen.add(name)
-            todo += after.surfaces[name].build.dependencies
-    return False
+    known = after.surfaces
+    return package in walk([new.package], lambda name: known[name].build.dependencies if name in known else ())
 
 
 def _all_headers(surface: Surface) -> dict[str, bool]:

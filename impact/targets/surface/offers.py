@@ -12,7 +12,7 @@ from ...facts.surface import declared
 from .changes import ChangeEvent, ComparedThing, Form, Line
 
 if TYPE_CHECKING:
-    from ..target import Target
+    from ..distro.distro import DistroTarget
     from .python import SurfaceNames
     from .store import SurfaceHistory, Surfaces
     from .surface import BuildSurface
@@ -59,7 +59,7 @@ class Offered(NamedTuple):
 class Offers:
     """The packages of a target. surfaces: where to look, by default the shipped file."""
 
-    def __init__(self, target: Target, surfaces: Surfaces | None = None):
+    def __init__(self, target: DistroTarget, surfaces: Surfaces | None = None):
         self.target = target
         self._given = surfaces
 

@@ -105,3 +105,10 @@ def test_types_of_namespaces_that_are_used_whole(first, last, expected):
     """
     found = graph({"p/talker.cpp": main}, 1, defined=DefinedInterfaces({}, 1))
     assert ends(found, "publisher") == {("p/talker", "/out", expected)}
+
+
+@pytest.mark.parametrize("name", ['"."', '"..." + name', '"::"'])
+def test_a_topic_of_nothing_but_separators_is_no_fault(name):
+    text = f"import rospy\nrospy.init_node('n')\nname = 'x'\nrospy.Publisher({name}, String, queue_size=1)\n"
+    found = graph({"demo/scripts/n.py": text}, 1)
+    assert found.coverage.calls
