@@ -210,8 +210,9 @@ def _list_programs(view: TargetView, package, installs, started: set[str]) -> It
     for target in package.build.targets:
         if target.kind != "executable" or target.name not in placed:
             continue
-        linked = {package_of(item) for item in linked_items(package, target.name) or ()}
-        node = view.target.ros == 2 and "rclcpp" in linked
+        node = view.target.ros == 2 and "rclcpp" in {
+            package_of(item) for item in linked_items(package, target.name) or ()
+        }
         if not node and (target.output_name or target.name) not in started:
             continue
         folders = {install.destination.rstrip("/") for install in placed[target.name]}

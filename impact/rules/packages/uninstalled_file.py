@@ -117,8 +117,9 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
         missing.setdefault(folder, (name, "launch"))
     for folder, (name, kind) in missing.items():
         build = package.build
-        first = build.files[0] if build.files else installs[0].at.path
-        at = build.catkin_package or build.ament_package or At(first, 1)
+        at = (
+            build.catkin_package or build.ament_package or At(build.files[0] if build.files else installs[0].at.path, 1)
+        )
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         how = f"install(DIRECTORY {folder} DESTINATION {share})"
         if package.build_type == "ament_python":
