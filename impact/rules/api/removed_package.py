@@ -9,7 +9,8 @@ Why it breaks
 
 Severity
     error for a build or run dependency and for a find_package(REQUIRED) that surely counts on the target; warning for
-    dependencies of tests and documentation, and for optional or guarded calls.
+    dependencies of tests and documentation, and for optional or guarded calls; note for such calls that ask for a
+    package of the other generation of ROS.
 
 Example
     <exec_depend>ros1_bridge</exec_depend>              <!-- not released since Humble -->
@@ -22,6 +23,7 @@ Not reported
     does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
+from ...model.cmake.build import FoundPackage
 from ...model.view import TargetView
 from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
 
@@ -50,7 +52,7 @@ def list_gone_packages(view: TargetView, kind: str):
             if d.kind not in ("conflict", "replace") and (not d.condition or view.active_manifest(d.condition))
         ]  # fmt: skip
         uses += [
-            (f.name, "found", f.at, (*doubts_of_place(view, "build", f.conditions), f.required or Doubt.OPTIONAL))
+            (f.name, "found", f.at, _doubts_of_search(view, f))
             for f in package.build.found
             if view.active(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
         ]
@@ -61,3 +63,11 @@ def list_gone_packages(view: TargetView, kind: str):
             seen.add(name)
             data = {"distro": view.target.distro, "replacement": gone[name]}
             yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
+
+
+def _doubts_of_search(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:
+    """What speaks against an error where CMake looks for a package. What it does not always look for, or goes on
+    without, and belongs to the other generation of ROS, is for builds in that."""
+    doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
+    dispensable = any(isinstance(each, Doubt) for each in doubts) and view.target.other_generation(found.name)
+    return (*doubts, Doubt.DISPENSABLE) if dispensable else doubts
