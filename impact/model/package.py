@@ -35,6 +35,7 @@ from ..facts.words import mentions
 from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
+from .cmake.installed import HEADER_ENDINGS
 from .macros import Macros
 from .python.undefined import (
     PythonOffer,
@@ -1290,4 +1291,4 @@ def _either(one: list[Condition], other: tuple[Condition, ...]) -> list[Conditio
 
 def is_header(path: str) -> bool:
     """True for C and C++ header names."""
-    return path.endswith((".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".inl", ".cuh", ".h.in", ".hpp.in"))
+    return path.removesuffix(".in").endswith(HEADER_ENDINGS)

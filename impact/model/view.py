@@ -33,6 +33,7 @@ from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import ChangeInForce, Provider
 from ..targets.version import at_least
 from .cmake.build import At, FoundPackage, for_tests
+from .cmake.names import MODULES, SINCE
 from .misspelling import SpellingIndex
 from .package import role_of_folder
 from .python.api import python_packages
@@ -848,14 +849,19 @@ class TargetView:
             known = known + [p for p in self.providers.cmake(name.lower()) if p not in known]
         found = _without_broad([p for p in known if p.name != name or p.kind != "ros"])
         modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
-        if modules and name in ("Eigen", "TinyXML", "TinyXML2", "NUMPY", "GSL", "UUID", "Xenomai"):
+        if modules and not self._has_find_module(name):
             # The library alone brings no find module of this name; catkin itself did until hydro.
             if self.target.distro in ("groovy", "hydro"):
                 return [Provider("system", "")]
-            return [
-                p for p in found if p.kind == "ros" or (name == "TinyXML2" and p in self.providers.cmake(name.lower()))
-            ]
+            configured = {*self.providers.installed_cmake(name), *self.providers.installed_cmake(name.lower())}
+            return [p for p in found if p.kind == "ros" or p in configured]
         return found
+
+    def _has_find_module(self, name: str) -> bool:
+        """Whether the target's CMake finds a package of this name by a module of its own."""
+        module = f"Find{name}"
+        version = self.target.library("cmake")
+        return module in MODULES and (not version or at_least(version, SINCE.get(module, "0")))
 
     @cached_method
     def module(self, module: str) -> tuple[Provider, ...]:

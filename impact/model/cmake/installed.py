@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from ..workspace import Package
 
 # Names of headers, by their last part.
-HEADER_NAME = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
+HEADER_ENDINGS = (".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".tcc", ".txx", ".inl", ".impl", ".cuh")
+HEADER_NAME = re.compile(f"(?:{'|'.join(map(re.escape, HEADER_ENDINGS))})\\Z")
 
 
 class InstalledHeaders(NamedTuple):
