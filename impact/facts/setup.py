@@ -24,10 +24,9 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Installed things, read from literals (setup.py is parsed, never run).
 
     entry_points: (name, module, line, function) of console_scripts. data_files: (destination, pattern, line), where
-    glob(...) and os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as
-    written, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause
-    each.
-    python: of a setup.py, its imports and syntax like those of any Python file.
+    glob(...) and os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts: as written.
+    packages: dotted, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in
+    one clause each. python: of a setup.py, its imports and syntax like those of any Python file.
     script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
     are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).
     """
@@ -140,7 +139,9 @@ class _Reader(Constants):
         given = self.arguments
         directories = given.get("package_dir")
         return SetupFile(
-            tuple(self.strings("packages") + self.strings("py_modules")),
+            # Paths of folders do as well as dotted names.
+            tuple(name.strip("/").replace("/", ".") for name in self.strings("packages"))
+            + tuple(self.strings("py_modules")),
             {str(k): str(v) for k, v in directories.items() if isinstance(v, str)}
             if isinstance(directories, dict)
             else {},

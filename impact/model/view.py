@@ -848,7 +848,7 @@ class TargetView:
             # `x-config.cmake` answers to any spelling of X.
             known = known + [p for p in self.providers.cmake(name.lower()) if p not in known]
         found = _without_broad([p for p in known if p.name != name or p.kind != "ros"])
-        modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
+        modules = [p for p in found if p.sure and p.name in ("cmake_modules", "eigen3_cmake_module")]
         if modules and not self._has_find_module(name):
             # The library alone brings no find module of this name; catkin itself did until hydro.
             if self.target.distro in ("groovy", "hydro"):

@@ -180,6 +180,9 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
         return False
     if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
         return False
+    searched = (*build.include_dirs, *((link.item, ()) for target in build.targets for link in target.links))
+    if any(item.startswith(("/", "~", "$ENV{")) for item, _ in searched):
+        return False  # a folder of the machine
     if view.unknown_contents.may_hold(package, path.lstrip("./")):
         return False
     return path.startswith(".") or all(_has_known_headers(view, one) for one in _list_direct(view, package))

@@ -28,7 +28,7 @@ Not reported
     Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
     something unknown reaches; types that a file of the package announces itself; types of interfaces that the workspace
     has; names of the standard library that packages found bring under a later C++ standard which they ask for; macros
-    that a file of the workspace defines.
+    that a file of the workspace defines; packages with target_precompile_headers().
 """
 
 from ...model.cmake.build import for_tests
@@ -61,6 +61,7 @@ def missing_include(view: TargetView):
     defined = frozenset().union(*(package.digest.defined for package in view.workspace))
     for package in view:
         headers, places = LostHeaders(view, package), _Places(package)
+        precompiled = any(use.name == "target_precompile_headers" for use in package.build.uses)
         reported: set[tuple[str, str]] = set()
         for need in package.digest.needed_headers:
             if need.role == "aside" or need.name in defined or not view.active(need.conditions):
@@ -72,7 +73,7 @@ def missing_include(view: TargetView):
                     yield Diagnostic(need.at, need.name, package.name, {"owner": owner}, "no interface", (doubt,))
                 continue
             lost = headers.find(need)
-            if lost is None or (need.at.path, lost.header) in reported:
+            if lost is None or precompiled or (need.at.path, lost.header) in reported:
                 continue
             sure = places.compiles(need) and lost.sure and need.role == "build" and view.certain(need.conditions)
             if lost.standard and not lost.once and not (sure and lost.now):
