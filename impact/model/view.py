@@ -594,6 +594,14 @@ class TargetView:
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
 
     @cached_method
+    def is_included_under_conditions(self, package: Package, library: str) -> bool:
+        """Whether a package includes headers of a library only under conditions that may not hold, as where it carries
+        a copy of its own beside the platform's."""
+        roots = include_roots(library)
+        found = [i for i in package.digest.includes if roots and i.path.startswith(roots)]
+        return bool(found) and not any(self.certain(include.conditions) for include in found)
+
+    @cached_method
     def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
         return MappingProxyType(self._declares(package))

@@ -136,6 +136,7 @@ def _list_reviewed_of(
         doubts = doubts_of_place(view, use.role, use.conditions)
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
         doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
+        doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, change.package) else doubts
         data = {**data_of(found), "standard": standard, "advice": change.new}
         if standard:
             data["since"] = ""  # the version is bound to the standard

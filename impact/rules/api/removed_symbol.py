@@ -120,6 +120,8 @@ def _list_doubts(
     doubts = [*doubts_of_place(view, role, use.conditions)]
     if use.text in rows.own:
         doubts.append(Doubt.OWN)
+    if view.is_included_under_conditions(package, change.package):
+        doubts.append(Doubt.GUARDED)
     if use.language == "python" and role == "test":
         doubts.append(Doubt.TEST)
     if (use.language == "python" and stood_in_for(use.text)) or change.kind == "api-changed":
