@@ -274,7 +274,8 @@ def _struct(kind: str) -> type[Any]:
     return getattr(import_module(f".{module}", __package__), struct)
 
 
-_encoder = msgspec.msgpack.Encoder()
+# Sets in one order, so that equal facts have equal bytes.
+_encoder = msgspec.msgpack.Encoder(order="deterministic")
 
 
 def encode(facts: FileFacts[Any]) -> bytes:
