@@ -274,8 +274,7 @@ def _struct(kind: str) -> type[Any]:
     return getattr(import_module(f".{module}", __package__), struct)
 
 
-# Sets in one order, so that equal facts have equal bytes.
-_encoder = msgspec.msgpack.Encoder(order="deterministic")
+_encoder = msgspec.msgpack.Encoder()
 
 
 def encode(facts: FileFacts[Any]) -> bytes:

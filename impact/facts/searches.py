@@ -93,10 +93,10 @@ _WORD = re.compile(rb"\w+")
 # An expression that starts with a literal is found at the speed of one; what stands before it is looked at after.
 _FUNCTION = re.compile(rb"(::(?<=\w::)[A-Za-z]\w{2,100})\s?(\([^;{}]{0,1000})\{")
 _SCOPE = re.compile(rb"\w+\Z")
-_FREE = re.compile(rb"^(?!static|inline|template|else|return|typedef|using|extern)[a-zA-Z][\w:<>,]{0,100}[ \n*&]{1,4}"
-                   rb"([A-Za-z]\w{3,100}) ?(\([^;{}]{0,1000})\{", re.MULTILINE)  # fmt: skip
-_CALLED = re.compile(rb"(?<![\w.>])(?:\w{1,50}::){0,3}([A-Za-z]\w{3,100}) ?\(")
-_CALLED_ON = re.compile(rb"[.>]([A-Za-z]\w{2}) ?\(")
+_FREE = re.compile(rb"\n(?!static|inline|template|else|return|typedef|using|extern)[a-zA-Z][\w:<>,]{0,100}[ \n*&]{1,4}"
+                   rb"([A-Za-z]\w{3,100}) ?(\([^;{}]{0,1000})\{")  # fmt: skip
+# Of what stands before a parenthesis, backwards: a name without a receiver, or a short one behind one.
+_CALLED = re.compile(rb" ?(?:(\w{3,100}[A-Za-z])(?![\w.>])|(\w{2}[A-Za-z])[.>])")
 _AFTER_PARAMETERS = re.compile(rb"\s*(?:\Z|[a-z/&]|:(?!:)|->)")
 
 
@@ -107,7 +107,7 @@ def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
         _decoded(_SPACE.findall(data)),
         _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
         _decoded((*_functions(data), *_free_functions(data))),
-        _decoded((*_CALLED.findall(data), *(b"." + name for name in _CALLED_ON.findall(data)))),
+        _decoded(_called(data)),
     )
 
 
@@ -119,7 +119,14 @@ def _functions(data: bytes) -> Iterator[bytes]:
 
 
 def _free_functions(data: bytes) -> Iterator[bytes]:
-    return (b"::" + found[1] for found in _FREE.finditer(data) if _is_head(found[2]))
+    return (b"::" + found[1] for found in _FREE.finditer(b"\n" + data) if _is_head(found[2]))
+
+
+def _called(data: bytes) -> Iterator[bytes]:
+    for before in {part[:-104:-1] for part in data.split(b"(")[:-1]}:
+        found = _CALLED.match(before)
+        if found is not None:
+            yield found[1][::-1] if found[1] else b"." + found[2][::-1]
 
 
 def _is_head(text: bytes) -> bool:

@@ -137,7 +137,7 @@ def extractor(kind: str) -> Callable[[bytes], None]:
                 _raise_again(found.kind, data)
                 raise Violated(problem.message)
         encoded = kinds.encode(found)
-        require(kinds.encode(kinds.decode(kind, encoded)) == encoded, "facts decode to others")
+        require(kinds.decode(kind, encoded) == found, "facts decode to others")
 
     return check
 
