@@ -11,6 +11,8 @@ from functools import cached_property
 
 import msgspec
 
+from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
 from ...facts.setup import SetupFile
@@ -275,14 +277,16 @@ class _Modules:
         for path, file in setup:
             for _, module, *_ in file.entry_points:
                 found.update(self._files.keys() & set(file.places_of(posixpath.dirname(path), module)))
-        waiting = [*found, *(path for path, facts in self._files.items() if facts.interpreter)]
-        while waiting:
-            path = waiting.pop()
-            for item in self._files[path].imports:
-                places = set() if item.lazy or item.conditions else set(self.named(path, item)) - found
-                found |= places
-                waiting.extend(places)
-        return frozenset(found)
+        scripts = {path for path, facts in self._files.items() if facts.interpreter}
+        reached = set(walk((*found, *scripts), self._list_imported))
+        # A script counts as a module where something imports it.
+        return frozenset(found.union(*map(self._list_imported, reached)))
+
+    @cached_method
+    def _list_imported(self, path: str) -> set[str]:
+        """The modules that a file imports in any case."""
+        imports = (item for item in self._files[path].imports if not (item.lazy or item.conditions))
+        return {place for item in imports for place in self.named(path, item)}
 
     def package_of(self, path: str, roots: Collection[str]) -> str:
         """The Python package that a module lies in, below one of these folders; empty for another module."""
