@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from ..analysis.machine_compare import DependencyUse, Machines
     from ..analysis.target_compare import UpgradeItem
 
-FORMATS = ("text", "json")
 SCHEMA = 1
 _TAKES = {
     "find_package": "finds", "component": "finds", "pkg-config": "finds", "include": "includes", "import": "imports",

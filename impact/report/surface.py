@@ -15,8 +15,6 @@ from .columns import LinePart, laid_out
 from .markdown_text import cell, code, escaped
 from .style import Style, painted
 
-FORMATS = ("text", "json", "markdown")
-
 
 class VersionSource(NamedTuple):
     """Where a version was read. asked: as the user wrote it. approximate: it is not there, and the revision stands for

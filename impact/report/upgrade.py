@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..analysis.upgrade import Upgrade
     from ..rules.rule import Finding
 
-FORMATS = ("text", "json", "html")
 SCHEMA = 1
 
 

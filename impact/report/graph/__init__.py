@@ -12,15 +12,13 @@ from ..style import Style
 from .text import WIDE
 from .text import render as as_text
 
-FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
-
 
 def draw(
     graph: Graph, format: str, base: Graph | None = None, *, nodes: Sequence[str] = (),
     topics: Sequence[str] = (), packages: Sequence[str] = (), around: str = "", hops: int = 2,
     everything: bool = False, style: Style = WIDE,
 ) -> str:  # fmt: skip
-    """A graph in one of FORMATS. base: what it is compared with: then what is new, gone and changed is marked.
+    """A graph in the format of one of the modules here. base: what it is compared with; what differs is then marked.
 
     nodes to everything: as for selected(). style: how text is written. Raises NothingSelected.
     """
