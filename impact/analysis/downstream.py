@@ -75,9 +75,8 @@ class Impact(msgspec.Struct, frozen=True):
 
     @property
     def reached(self) -> set[str]:
-        """Ids of all nodes that are changed or reached."""
-        found = {node for effect in self.effects for node in effect.nodes}
-        return found | {hop.node for effect in self.effects for hop in effect.reaches}
+        """Ids of all nodes downstream of a change."""
+        return {hop.node for effect in self.effects for hop in effect.reaches}
 
 
 NOTHING = Impact((), (), 0, 0, Coverage(0, 0, 0, 0))
@@ -161,8 +160,7 @@ class _Reading:
         found += self.callbacks()
         ordered = sorted(found, key=lambda one: (KINDS.index(one.kind), one.package, one.path, one.line, one.subject))
         effects = tuple(dict.fromkeys(ordered))
-        used = {node for effect in effects for node in effect.nodes}
-        used |= {hop.node for effect in effects for hop in effect.reaches}
+        used = {id for effect in effects for id in (*effect.nodes, *(hop.node for hop in effect.reaches))}
         nodes = {node.id: node for node in (*self.before.nodes, *self.now.nodes)}
         kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
         return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)

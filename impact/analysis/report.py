@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from ...edges.console import counted
 from ..rules.rule import Finding, Rule
@@ -187,12 +187,24 @@ def fresh(report: Report) -> list[Finding]:
     return [finding for finding in report.findings if finding.new]
 
 
-def count_by_severity(findings: Iterable[Finding]) -> dict[str, int]:
+class Graded(Protocol):
+    """Something that has a severity: a finding, or several with one cause."""
+
+    @property
+    def severity(self) -> str: ...
+
+
+def count_by_severity(graded: Iterable[Graded]) -> dict[str, int]:
     """How many errors, warnings and notes, in this order, zeros included."""
     counts = {"error": 0, "warning": 0, "note": 0}
-    for finding in findings:
-        counts[finding.severity] = counts.get(finding.severity, 0) + 1
+    for one in graded:
+        counts[one.severity] = counts.get(one.severity, 0) + 1
     return counts
+
+
+def severities_text(graded: Iterable[Graded], between: str = ", ") -> str:
+    """`2 errors, 1 note`; empty without any."""
+    return between.join(counted(number, name) for name, number in count_by_severity(graded).items() if number)
 
 
 def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:

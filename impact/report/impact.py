@@ -63,8 +63,7 @@ def summary(impact: Impact) -> str:
         return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
     told = ", ".join(counted(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
-    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
-    return f"{told} changed; {counted(len(reached), 'node')} of {impact.of:,} reached{silent}"
+    return f"{told} changed; {counted(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
 
 
 def names_of(impact: Impact) -> dict[str, str]:
@@ -171,8 +170,7 @@ def compact(impact: Impact) -> dict[str, Any]:
         row["reaches"] = [hop.node for hop in effect.reaches[:_MOST_NODES]]
         row["reached"] = len(effect.reaches)
         rows.append(row)
-    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
-    return {"changes": rows, "reached": len(reached), "nodes": impact.of, "silent": impact.silent}
+    return {"changes": rows, "reached": len(impact.reached), "nodes": impact.of, "silent": impact.silent}
 
 
 def _nowhere(effect: Effect) -> str:

@@ -10,6 +10,7 @@ from ...edges.console import escape_json, visible, visible_bytes_in_json
 from ..analysis.report import Report, focus
 from ..rules.rule import Edit, Finding, Rule
 from . import evidence
+from .json import target_as_data
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _ROOT = "%SRCROOT%"
@@ -38,10 +39,7 @@ def render(report: Report) -> str:
         "columnKind": "unicodeCodePoints",
         "results": [_result(report, finding, silent, index) for finding, silent in results],
         "properties": {
-            "targets": [
-                {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
-                for target in report.targets
-            ],
+            "targets": list(map(target_as_data, report.targets)),
             "data": report.data,
             "coverage": report.coverage._asdict() | {"unresolved": dict(report.coverage.unresolved)},
         }
