@@ -1,6 +1,6 @@
 """What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
@@ -12,7 +12,7 @@ from ..facts.flow import FlowFile
 from ..logic.code_changes import ChangedFunction, changed_functions
 from ..logic.history import PackageFile
 from ..logic.states import renamed_words
-from ..logic.two_states import Differing, differing, flow_facts, publishing
+from ..logic.two_states import Differing, bytes_of, differing, flow_facts, publishing
 from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
@@ -360,9 +360,8 @@ class _Reading:
         found, was = self.differing, self.was
         old, new = self.facts
         result: list[ChangedFunction] = []
-        read = _reader(self.base), _reader(self.workspace)
-        texts = {file.id: read[0](was[id(file)]) for _, file, _ in found.changed() if file is not None}
-        texts |= {file.id: read[1](path) for path, _, file in found.changed()}
+        texts = {file.id: bytes_of(self.base, was[id(file)]) for _, file, _ in found.changed() if file is not None}
+        texts |= {file.id: bytes_of(self.workspace, path) for path, _, file in found.changed()}
         words = renamed_words(found.old, found.new, found.renamed, lambda file: texts.get(file.id, b""))
         for path, before, after in found.changed():
             facts = _facts(new, path)
@@ -389,16 +388,6 @@ def _leads(led: Sequence[Led]) -> str:
     if one.steps == 0:
         return f"the callback of {of}{detail}{more}"
     return f"called from `{one.callback.name}`, the callback of {of}{detail}{more}"
-
-
-def _reader(workspace: Workspace) -> Callable[[str], bytes]:
-    def read(path: str) -> bytes:
-        try:
-            return workspace.read(path)
-        except OSError:
-            return b""
-
-    return read
 
 
 def _facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:

@@ -42,10 +42,6 @@ class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 
-def _never(fix: tuple[FixAction, ...], target: str) -> bool:
-    return False
-
-
 def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
     """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
     shared = [_list_shared(rules[name], diagnostic) for name, diagnostic in yielded]
@@ -77,7 +73,7 @@ def merge_diagnostics(
     targets: Sequence[str],
     rules: Mapping[str, Rule],
     line_text: Callable[[str, int], str],
-    holds: Callable[[tuple[FixAction, ...], str], bool] = _never,
+    holds: Callable[[tuple[FixAction, ...], str], bool] = lambda fix, target: False,
 ) -> list[Finding]:
     """One fact about several targets becomes one finding.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from ...edges.console import counted
@@ -56,16 +56,12 @@ class Coverage(NamedTuple):
     unresolved: Mapping[str, int] = {}
 
 
-def _no_excerpt(path: str, line: int) -> list[str]:
-    return []
-
-
 class Report(NamedTuple):
     """One run. Findings come sorted by path and line.
 
     version: of the tool. data: ISO day of the shipped data. suppressed: silenced by allow comments. known: in the
-    baseline. rules: those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or 1)
-    to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
+    baseline. rules: gives those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or
+    1) to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
     empty without one. failure: why the run failed, empty when it did not. impact: what the changes since
     the base reach in the message flow, None without a base. seconds: wall time.
     """
@@ -78,9 +74,9 @@ class Report(NamedTuple):
     packages: tuple[ReportedPackage, ...] = ()
     suppressed: tuple[Finding, ...] = ()
     known: tuple[Finding, ...] = ()
-    rules: Sequence[Rule] = ()
+    rules: Callable[[], Iterable[Rule]] = tuple
     seconds: float = 0.0
-    excerpt: Callable[[str, int], list[str]] = _no_excerpt
+    excerpt: Callable[[str, int], list[str]] = lambda path, line: []
     root: str = "."
     base: str = ""
     failure: str = ""

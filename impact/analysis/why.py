@@ -122,16 +122,12 @@ def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[W
         found = [("name", ())]
     target = view.target.name
     here = tuple(
-        _finding_line(each)
+        f"{each.path}:{each.line}: {each.severity}: {each.message} [{each.rule}]"
         for each in findings
         if (f"{each.path}:{each.line}" in used or name == each.subject or f"`{name}`" in each.message)
         and (not each.targets or target in each.targets)
     )
     return [WhyAnswer(target, what, offers, used, undeclared, changes[:8], here) for what, offers in found]
-
-
-def _finding_line(finding: Finding) -> str:
-    return f"{finding.path}:{finding.line}: {finding.severity}: {finding.message} [{finding.rule}]"
 
 
 def _offer(view: TargetView, name: str, package: str) -> NameOffer:

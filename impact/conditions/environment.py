@@ -19,14 +19,6 @@ COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 PARTS = {"MAJOR": 0, "MINOR": 1, "PATCH": 2, "REVISION": 2, "SUBMINOR": 2}
 
 
-def _nothing_known(name: str) -> None:
-    return None
-
-
-def _nothing_gone(kind: str, name: str) -> bool:
-    return False
-
-
 @dataclass(frozen=True, eq=False)
 class Environment:
     """What is known of one machine.
@@ -43,11 +35,11 @@ class Environment:
     ros_version: str = ""
     python: tuple[int, int] | None = None
     codename: str = ""
-    versions: Callable[[str], str | None] = _nothing_known
-    packages: Callable[[str], bool | None] = _nothing_known
-    headers: Callable[[str], bool | None] = _nothing_known
+    versions: Callable[[str], str | None] = lambda name: None
+    packages: Callable[[str], bool | None] = lambda name: None
+    headers: Callable[[str], bool | None] = lambda name: None
     testing: bool | None = None
-    gone: Callable[[str, str], bool] = _nothing_gone
+    gone: Callable[[str, str], bool] = lambda kind, name: False
 
 
 # Names used by macros and CMake variables, in lower case, where they differ from the package's or library's own.

@@ -43,7 +43,7 @@ def _data(report: Report) -> dict[str, Any]:
             ]
             for package, row in matrix(report).items()
         ],
-        "rules": {rule.name: rule.summary for rule in report.rules if rule.documentation},
+        "rules": {rule.name: rule.summary for rule in report.rules() if rule.documentation},
         "impact": _impact(report),
         "findings": [as_row(report, finding, names) for finding in report.findings],
     }

@@ -23,7 +23,7 @@ def render(report: Report) -> str:
         *((finding, [{"kind": "inSource"}]) for finding in report.suppressed),
         *((finding, [{"kind": "external", "justification": "in the baseline"}]) for finding in report.known),
     ]
-    rules = _rules(report.rules, [finding for finding, _ in results])
+    rules = _rules(report.rules(), [finding for finding, _ in results])
     index = {rule["id"]: position for position, rule in enumerate(rules)}
     run = {
         "tool": {

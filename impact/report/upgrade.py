@@ -168,7 +168,7 @@ def _data(found: Upgrade) -> Mapping[str, Any]:
         "to": found.new._asdict(),
         "seconds": round(found.seconds, 2),
         "folders": {package.name: package.path for package in found.packages},
-        "rules": {rule.name: rule.summary for rule in report.rules if rule.documentation},
+        "rules": {rule.name: rule.summary for rule in report.rules() if rule.documentation},
         "items": [_row(found, item, group) for group, these in enumerate((found.breaks, found.deprecations))
                   for item in these],
     }  # fmt: skip
