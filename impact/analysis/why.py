@@ -73,9 +73,7 @@ def is_workspace(folder: Path) -> bool:
     return False
 
 
-def answers(
-    name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
-) -> list[WhyAnswer]:  # fmt: skip
+def answers(name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False) -> list[WhyAnswer]:
     """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
     check() does."""
     options = Options(targets=targets, follow_links=follow_links)
@@ -140,24 +138,13 @@ def _offer(view: TargetView, name: str, package: str) -> NameOffer:
         return NameOffer("package", name, version, target.since(name), "")
     resolution = target.resolve(name)
     if resolution is not None:
-        libraries = [
-            f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)
-        ]
-        return NameOffer(
-            "key",
-            name,
-            ", ".join(libraries),
-            "",
-            f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}",
-        )
+        known = ((library, target.library(library)) for library in view.libraries_of(name))
+        versions = ", ".join(f"{library} {version}" for library, version in known if version)
+        note = f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}"
+        return NameOffer("key", name, versions, "", note)
     last = target.last_distro(name)
-    return NameOffer(
-        "absent",
-        name,
-        "",
-        "",
-        f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there",
-    )
+    note = f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there"
+    return NameOffer("absent", name, "", "", note)
 
 
 def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:

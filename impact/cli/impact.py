@@ -23,5 +23,5 @@ def impact(
     say_notes(found.notes)
     part = chosen(found.impact, package, topic, node)
     if format == "json":
-        return report.as_json(part, report.ImpactHeading(__version__, found.root, found.rev, found.base))
+        return report.as_json(part, found, __version__)
     return report.markdown(part) if format == "markdown" else report.text(part, all, style_of(output))

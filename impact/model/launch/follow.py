@@ -19,6 +19,7 @@ from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
 from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import (
+    EMPTY,
     LaunchArgument,
     Launched,
     LaunchParameter,
@@ -83,7 +84,7 @@ class _Launch(Filling):
         self.open: list[str] = []
         self.assumed: list[str] = []
         self.after: list[str] = []
-        self.container = known("")
+        self.container = EMPTY
         self.most = self.budget = most
         self.started: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
@@ -436,7 +437,7 @@ class _Launch(Filling):
         if self.generation == 1:
             self.node1(action)
         else:
-            self.node2(action, known(""))
+            self.node2(action, EMPTY)
 
     do_lifecycle = do_test = do_container = do_node
 
@@ -477,24 +478,14 @@ class _Launch(Filling):
         return self.text(action.get(key) or literal(""))
 
     def begin(self, action: Action, kind: str, **fields: Any) -> Started:
-        """Notes that an action starts something. fields: those of Started that are not empty."""
-        empty = known("")
-        texts: dict[str, Any] = {key: fields.get(key, empty) for key in _TEXTS}
-        lists: dict[str, Any] = {key: tuple(fields.get(key, ())) for key in ("remaps", "settings", "arguments")}
+        """Notes that an action starts something. fields: those of Started that are not empty, lists as tuples."""
         started = Started(
-            kind=kind,
-            generation=self.generation,
-            **texts,
-            **lists,
-            conditions=tuple(self.open),
-            assumed=every([tuple(self.assumed)]),
-            after=tuple(self.after),
-            at=self.at(action.line),
-            chain=tuple(self.chain),
-        )
+            kind, self.generation, self.at(action.line), tuple(self.chain), tuple(self.open),
+            every([tuple(self.assumed)]), tuple(self.after), **fields,
+        )  # fmt: skip
         self.started.append(started)
-        for key, text in texts.items():
-            self.told(text, action.line, f"{key} of {kind}")
+        for key in _TEXTS:
+            self.told(getattr(started, key), action.line, f"{key} of {kind}")
         return started
 
     def ros_arguments(
@@ -557,7 +548,7 @@ class _Launch(Filling):
 
     def do_process(self, action: Action) -> None:
         words = tuple(self.text(value) for value in action.all("command"))
-        package = executable = known("")
+        package = executable = EMPTY
         rest = words
         if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
             package, executable, rest = words[2], words[3], words[4:]
@@ -572,10 +563,10 @@ class _Launch(Filling):
             "process",
             package=package,
             executable=executable,
-            name=name or known(""),
-            namespace=namespace or known(""),
-            remaps=remaps,
-            settings=settings,
+            name=name or EMPTY,
+            namespace=namespace or EMPTY,
+            remaps=tuple(remaps),
+            settings=tuple(settings),
             arguments=words,
         )
 
@@ -624,7 +615,7 @@ class _Launch(Filling):
                     self.put(f"{full.value}/{old[1:]}", ros1_value(new), known(new, text.assumed), action.line)
             else:
                 remaps.append(Remap(known(old), known(new, text.assumed), self.at(action.line)))
-        kind, plugin, container = ("test" if action.kind == "test" else "node"), known(""), known("")
+        kind, plugin, container = ("test" if action.kind == "test" else "node"), EMPTY, EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
             if command == "manager":
@@ -643,8 +634,8 @@ class _Launch(Filling):
             container=container,
             name=name,
             namespace=namespace,
-            remaps=remaps,
-            arguments=words,
+            remaps=tuple(remaps),
+            arguments=tuple(words),
         )
 
     def split(self, text: LaunchText) -> list[LaunchText]:
