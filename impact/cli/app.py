@@ -23,7 +23,6 @@ from ...corpus.cli import app as corpus_app
 from ...corpus.cli import set_suggester
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
 from .dev import app as dev_app
-from .study import app as study_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -32,25 +31,23 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-env_app = typer.Typer(
-    help="Machines: capture this machine as a target, compare two machines.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
-data_app = typer.Typer(
-    help="The shipped distro data: show its date, rebuild it, update it.", no_args_is_help=True, rich_markup_mode=None
-)
-surface_app = typer.Typer(
-    help="What versions of packages offer, and what changed between them.", no_args_is_help=True, rich_markup_mode=None
-)
-app.add_typer(env_app, name="env")
-app.add_typer(surface_app, name="surface")
-app.add_typer(data_app, name="data")
+
+
+def _group(name: str, help: str) -> typer.Typer:
+    """A group of commands, which those below are added to."""
+    group = typer.Typer(help=help, no_args_is_help=True, rich_markup_mode=None)
+    app.add_typer(group, name=name)
+    return group
+
+
+env_app = _group("env", "Machines: capture this machine as a target, compare two machines.")
+surface_app = _group("surface", "What versions of packages offer, and what changed between them.")
+data_app = _group("data", "The shipped distro data: show its date, rebuild it, update it.")
 app.add_typer(corpus_app, name="corpus")
 set_suggester(suggest_label)
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
-app.add_typer(study_app, name="study")
+study_app = _group("study", "The study: its notebooks, run anew.")
 app.add_typer(dev_app, name="dev", hidden=True)
 
 
@@ -95,7 +92,7 @@ _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number o
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
-_WITH_COMMAS = frozenset(("target", "base", "set_"))
+_WITH_COMMAS = frozenset(("target", "base", "set_", "names"))
 
 
 def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -355,6 +352,35 @@ def data_build(
 @_command(data_app, "update")
 def data_update() -> None:
     """Update the snapshot over the network, with the rosdistro library."""
+
+
+@_command(study_app, "run")
+def study_run(
+    names: list[str] = _argument("Notebooks, such as 03_updates or 03; all by default."),
+    full: bool = _option("From the reports' texts and all distros, not the small form.", "--full", default=False),
+    reports: Path | None = _option("The reports' texts, JSON Lines; what reads reports needs them with --full."),
+    output: Path = _option(
+        "Folder for the executed notebooks, figures and tables.", "--output", "-o", default=Path("study")
+    ),
+    notebooks: Path | None = _option("Folder of the notebooks, outside a checkout."),
+    quiet: _Quiet = False,
+) -> None:
+    """Run the notebooks and write their figures and tables.
+
+    Exit status: 0 all were made, 1 a notebook failed or made not all of its figures, 2 the tool failed.
+    """
+
+
+@_command(study_app, "predict")
+def study_predict(
+    reports: Path = _option("The reports' texts, JSON Lines.", default=...),
+    output: Path | None = _option("Folder for both files; that of the notebooks by default.", "--output", "-o"),
+    quiet: _Quiet = False,
+) -> None:
+    """Judge every labelled report by a model that has not seen its repository, for 02_triage; ids and numbers only.
+
+    Writes triage_predictions.jsonl and triage_beside.json. It takes some minutes.
+    """
 
 
 def _version(value: bool) -> None:
