@@ -13,6 +13,7 @@ from typing import Any
 from ....edges.dispatch import node_methods
 from ..place import Problem
 from ..python.source import read
+from ..python.text import parameters_in
 from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, plain, together
 from .parameter_files import DEEPEST
 from .python_calls import MAKERS, MOST_TURNS, LaunchCall
@@ -647,33 +648,22 @@ class Walker:
         node = function.node
         if self.calls >= DEEPEST_CALL:
             return Unknown(getattr(node, "name", "lambda"))
-        scope = LaunchScope(function.scope)
-        signature = node.args
-        names = [a.arg for a in (*signature.posonlyargs, *signature.args)]
-        if function.self is not None:
-            arguments = [function.self, *arguments]
+        scope, depth = LaunchScope(function.scope), len(self.conditions)
         outer = (self.scope, self.returns, self.base)
         self.scope = function.scope
-        for parameter, default in zip(reversed(names), reversed(signature.defaults), strict=False):
-            scope.names[parameter] = self.value(default)
-        for parameter, default in zip(signature.kwonlyargs, signature.kw_defaults, strict=True):
-            if default is not None:
-                scope.names[parameter.arg] = self.value(default)
-        for parameter in (*names, *(a.arg for a in signature.kwonlyargs)):
-            scope.names.setdefault(parameter, Unknown(parameter))
-        scope.names.update(zip(names, arguments, strict=False))
-        if signature.vararg is not None:
-            scope.names[signature.vararg.arg] = Items(arguments[len(names) :], len(self.conditions))
-        known = {*names, *(a.arg for a in signature.kwonlyargs)}
-        rest: list[tuple[Any, Any]] = []
-        for key, value in keywords.items():
-            if key in known:
-                scope.names[key] = value
+        positional = iter(arguments if function.self is None else [function.self, *arguments])
+        rest = dict(keywords)
+        for kind, parameter, default in parameters_in(node.args):
+            name = parameter.arg
+            if kind == "args":
+                value: Any = Items([*positional], depth)
+            elif kind == "kwargs":
+                value = Pairs([(TextValue(literal(key)), each) for key, each in rest.items()], depth)
             else:
-                rest.append((TextValue(literal(key)), value))
-        if signature.kwarg is not None:
-            scope.names[signature.kwarg.arg] = Pairs(rest, len(self.conditions))
-        self.scope, self.returns, self.base = scope, [], len(self.conditions)
+                missing = Unknown(name) if default is None else self.value(default)
+                value = rest.pop(name, missing if kind == "keyword" else next(positional, missing))
+            scope.names[name] = value
+        self.scope, self.returns, self.base = scope, [], depth
         self.calls += 1
         try:
             if isinstance(node, ast.Lambda):

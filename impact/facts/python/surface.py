@@ -15,7 +15,7 @@ from ..condition import Condition
 from ..place import Problem
 from .reader import EXCEPT, IMPORT_ERRORS, TRY
 from .source import read
-from .text import caught_by, dotted
+from .text import caught_by, dotted, parameters_in
 
 
 class PythonParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -442,22 +442,9 @@ _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
 
 def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:
     """Parameters in order, `self` and `cls` among them."""
-    positional = [(a, "positional") for a in arguments.posonlyargs] + [(a, "normal") for a in arguments.args]
-    missing = len(positional) - len(arguments.defaults)
-    for number, (argument, kind) in enumerate(positional):
-        default = arguments.defaults[number - missing] if number >= missing else None
-        yield _parameter(argument, kind, default)
-    if arguments.vararg is not None:
-        yield _parameter(arguments.vararg, "args", None)
-    for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
-        yield _parameter(argument, "keyword", default)
-    if arguments.kwarg is not None:
-        yield _parameter(arguments.kwarg, "kwargs", None)
-
-
-def _parameter(argument: ast.arg, kind: str, default: ast.expr | None) -> PythonParameter:
-    annotation = _text(argument.annotation) if argument.annotation is not None else ""
-    return PythonParameter(argument.arg, kind, None if default is None else _text(default), annotation)
+    for kind, argument, default in parameters_in(arguments):
+        annotation = _text(argument.annotation) if argument.annotation is not None else ""
+        yield PythonParameter(argument.arg, kind, None if default is None else _text(default), annotation)
 
 
 def _flat(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:
