@@ -287,11 +287,8 @@ class Walker:
 
     def run_Import(self, statement: ast.Import) -> None:
         for alias in statement.names:
-            if alias.asname:
-                self.scope.names[alias.asname] = LaunchModule(alias.name)
-            else:
-                top = alias.name.partition(".")[0]
-                self.scope.names[top] = LaunchModule(top)
+            top = alias.name.partition(".")[0]
+            self.scope.names[alias.asname or top] = LaunchModule(alias.name if alias.asname else top)
 
     def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
         for alias in statement.names:
@@ -469,12 +466,9 @@ class Walker:
             pattern = plain(left.value)
             given = right.items if isinstance(right, Items) else [right]
             if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
-                values: list[Value] = []
-                for place, piece in enumerate(pattern.split("%s")):
-                    values.append(literal(piece))
-                    if place < len(given):
-                        values.append(self.text(given[place], node.right))
-                return TextValue(together(values))
+                first, *others = map(literal, pattern.split("%s"))
+                filled = ((self.text(value, node.right), piece) for value, piece in zip(given, others, strict=True))
+                return TextValue(together((first, *(part for pair in filled for part in pair))))
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return calculated(node, left.value, right.value)
         if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
@@ -517,24 +511,18 @@ class Walker:
                         break
                 continue
             open_.append(truth)
-        return (
-            TextValue((ValuePart("or" if is_or else "and", "", tuple(open_)),))
-            if len(open_) > 1
-            else TextValue(open_[0])
-        )
+        joined: Value = (ValuePart("or" if is_or else "and", "", tuple(open_)),)
+        return TextValue(joined if len(open_) > 1 else open_[0])
 
     def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
             truth = self.truth(node.operand)
-            return (
-                LaunchConstant(not truth) if isinstance(truth, bool) else TextValue((ValuePart("not", "", (truth,)),))
-            )
+            known = isinstance(truth, bool)
+            return LaunchConstant(not truth) if known else TextValue((ValuePart("not", "", (truth,)),))
         value = self.value(node.operand)
-        if isinstance(value, LaunchConstant) and isinstance(value.value, (int, float)):
-            if isinstance(node.op, ast.USub):
-                return LaunchConstant(-value.value)
-            if isinstance(node.op, ast.UAdd):
-                return value
+        is_number = isinstance(value, LaunchConstant) and isinstance(value.value, (int, float))
+        if is_number and not isinstance(node.op, ast.Invert):
+            return LaunchConstant(-value.value) if isinstance(node.op, ast.USub) else value
         return Unknown(source_of(node))
 
     def value_IfExp(self, node: ast.IfExp) -> Any:
@@ -691,23 +679,19 @@ class Walker:
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
-                return LaunchConstant(None)
-            if name == "extend" and isinstance(first, Items):
-                self.extend(receiver, first.items)
-                return LaunchConstant(None)
-            if name == "extend" and arguments:
-                self.extend(receiver, [Unknown(source_of(node.args[0]))])
-                return LaunchConstant(None)
-            if name == "insert" and len(arguments) == 2:
+            elif name == "extend" and arguments:
+                self.extend(receiver, first.items if isinstance(first, Items) else [Unknown(source_of(node.args[0]))])
+            elif name == "insert" and len(arguments) == 2:
                 place = first.value if isinstance(first, LaunchConstant) and isinstance(first.value, int) else 0
                 receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
-                return LaunchConstant(None)
-            if name == "remove" and first in receiver.items:
+            elif name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
-                return LaunchConstant(None)
-            if name == "copy":
+            elif name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
-        elif isinstance(receiver, Pairs):
+            else:
+                return Unknown(source_of(node))
+            return LaunchConstant(None)
+        if isinstance(receiver, Pairs):
             depth = len(self.conditions)
             if name == "items":
                 pairs = [

@@ -131,28 +131,18 @@ def percent_pieces(text: str) -> list[str | int | tuple[str]] | None:
     pieces: list[str | int | tuple[str]] = []
     literal, at, number = "", 0, 0
     for match in _PERCENT.finditer(text):
-        before = text[at : match.start()]
-        if "%" in before or match.group("width") == "*" or match.group("precision") == "*":
+        before, at = text[at : match.start()], match.end()
+        if "%" in before or "*" in (match["width"], match["precision"]):
             return None
         literal += before
-        at = match.end()
-        if match.group("kind") == "%":
+        if match["kind"] == "%":
             literal += "%"
             continue
-        if literal:
-            pieces.append(literal)
-            literal = ""
-        if match.group("key") is not None:
-            pieces.append((match.group("key"),))
-        else:
-            pieces.append(number)
-            number += 1
+        pieces += [literal] if literal else []
+        pieces.append(number if match["key"] is None else (match["key"],))
+        literal, number = "", number + (match["key"] is None)
     literal += text[at:]
-    if "%" in text[at:]:
-        return None
-    if literal:
-        pieces.append(literal)
-    return pieces
+    return None if "%" in text[at:] else [*pieces, *([literal] if literal else [])]
 
 
 def format_pieces(text: str) -> list[str | int | tuple[str]] | None:
