@@ -480,11 +480,9 @@ def format_baseline(findings: Iterable[Finding]) -> str:
 
     Only `fingerprint` and `count` are read again; the rest is for the person who reviews the file.
     """
-    counts: Counter[str] = Counter()
-    facts: dict[str, Finding] = {}
-    for finding in findings:
-        counts[finding.fingerprint] += 1
-        facts.setdefault(finding.fingerprint, finding)
+    known = list(findings)
+    counts = Counter(finding.fingerprint for finding in known)
+    facts = {finding.fingerprint: finding for finding in reversed(known)}
     entries = [
         {
             "rule": finding.rule,
@@ -504,12 +502,8 @@ def read_baseline(text: str | bytes) -> Counter[str]:
         data = load_json(text)
         if data["schema"] != 1:
             raise SettingsError(f"the baseline has schema {data['schema']}; this version reads schema 1")
-        return Counter(
-            {
-                str(entry["fingerprint"]): max(0, min(int(entry.get("count", 1)), _MOST_OF_ONE))
-                for entry in data["findings"]
-            }
-        )
+        counts = ((str(entry["fingerprint"]), int(entry.get("count", 1))) for entry in data["findings"])
+        return Counter({fingerprint: max(0, min(count, _MOST_OF_ONE)) for fingerprint, count in counts})
     except SettingsError:
         raise
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
@@ -522,11 +516,8 @@ def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple
     fresh: list[Finding] = []
     old: list[Finding] = []
     for finding in findings:
-        if left[finding.fingerprint] > 0:
-            left[finding.fingerprint] -= 1
-            old.append(finding)
-        else:
-            fresh.append(finding)
+        (old if left[finding.fingerprint] > 0 else fresh).append(finding)
+        left[finding.fingerprint] -= 1
     return fresh, old
 
 

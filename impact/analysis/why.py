@@ -18,6 +18,7 @@ from .session import Options, open_workspace
 _MARKS = ("package.xml", "rosimpact.toml", "colcon.meta")
 # How many levels of folders are looked through for a manifest (src/repository/package), and how many names.
 _LEVELS, _LOOKS_AT_MOST = 4, 5_000
+_SHOWN = 12
 _PRODUCTS = frozenset(("build", "install", "devel", "log"))
 
 
@@ -185,10 +186,7 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
         lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {visible(name)} PATH")
         return "\n".join(lines)
     used = found[0].used
-    lines.append(f"used at {counted(len(used), 'place')}" + (":" if used else ""))
-    lines += [f"  {place}" for place in used[:12]]
-    if len(used) > 12:
-        lines.append(f"  and {len(used) - 12} more")
+    lines += [f"used at {counted(len(used), 'place')}" + (":" if used else ""), *_first(used)]
     undeclared = sorted({package for answer in found for package in answer.undeclared})
     if undeclared:
         lines.append("not safe: used and not declared in " + ", ".join(undeclared))
@@ -197,15 +195,17 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
     reported = list(dict.fromkeys(line for answer in found for line in answer.findings))
     if reported:
-        lines.append(f"not safe: check reports {counted(len(reported), 'finding')} on it:")
-        lines += [f"  {line}" for line in reported[:12]]
-        if len(reported) > 12:
-            lines.append(f"  and {len(reported) - 12} more")
+        lines += [f"not safe: check reports {counted(len(reported), 'finding')} on it:", *_first(reported)]
     elif used and not undeclared and not gone:
         lines.append(
             "safe: every package that uses it declares it, or something that brings it, and check reports nothing on it"
         )
     return "\n".join(map(visible, lines))
+
+
+def _first(lines: Sequence[str]) -> list[str]:
+    more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
+    return [f"  {line}" for line in (*lines[:_SHOWN], *more)]
 
 
 def _is_gone(change: str, name: str) -> bool:

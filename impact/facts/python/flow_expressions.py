@@ -142,12 +142,9 @@ class Expressions(SourceText):
             return
         for field in _CHILDREN[node.__class__]:
             child = getattr(node, field)
-            if child.__class__ is list:
-                for item in child:
-                    if item is not None:
-                        self.visit(item)
-            elif child is not None:
-                self.visit(child)
+            for one in child if child.__class__ is list else (child,):
+                if one is not None:
+                    self.visit(one)
 
     def visit_Constant(self, node) -> None:
         pass
@@ -338,13 +335,12 @@ class Expressions(SourceText):
     def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
+        kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
         if len(elements) > LONGEST_LIST:
-            kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
             for each in elements[LONGEST_LIST:]:
                 self.visit(each)
             kept.append(FlowExpr("other", f"{len(elements) - LONGEST_LIST} more"))
-            return FlowExpr("list", "", tuple(kept))
-        return FlowExpr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
+        return FlowExpr("list", "", tuple(kept))
 
     value_List = value_Set = value_Tuple
 

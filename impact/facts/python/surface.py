@@ -187,10 +187,9 @@ class _Module:
                     self.assigned(item.optional_vars, None, "", scope, conditions)
             hides = any(_dotted(item.context_expr).endswith("suppress") for item in node.items)
             self.block(node.body, scope, (*conditions, TRY) if hides else conditions)
-        elif isinstance(node, (ast.For, ast.AsyncFor)):
-            self.assigned(node.target, None, "", scope, conditions)
-            self.block([*node.body, *node.orelse], scope, conditions)
-        elif isinstance(node, ast.While):
+        elif isinstance(node, (ast.For, ast.AsyncFor, ast.While)):
+            if not isinstance(node, ast.While):
+                self.assigned(node.target, None, "", scope, conditions)
             self.block([*node.body, *node.orelse], scope, conditions)
         elif isinstance(node, ast.Match):
             for case in node.cases:
@@ -299,10 +298,9 @@ class _Module:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
         self.block(node.body, name, ())
-        deprecated = next(
-            (b.deprecated for b in self.names[place:] if b.name == f"{name}.__init__" and b.deprecated), ""
-        )
-        if deprecated and not self.names[place].deprecated:
+        made = [bound.deprecated for bound in self.names[place:] if bound.name == f"{name}.__init__"]
+        if any(made) and not self.names[place].deprecated:
+            deprecated = next(filter(None, made))
             self.names[place] = msgspec.structs.replace(self.names[place], deprecated=deprecated)
 
     def assigned(
