@@ -366,31 +366,20 @@ def words(value: Value) -> list[Value]:
     """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
     found: list[Value] = []
     word: list[Value] = []
-    quote = ""
-    begun = False
+    quote, begun = "", False
     for piece in value:
-        if piece.kind != "text":
-            word.append((piece,))
-            begun = True
-            continue
-        held = ""
-        for c in piece.text:
-            if quote:
-                if c == quote:
-                    quote = ""
-                else:
-                    held += c
-            elif c in "'\"":
-                quote, begun = c, True
-            elif c.isspace():
-                if held or begun:
-                    found.append(together([*word, literal(held)]))
-                word, held, begun = [], "", False
-            else:
-                held += c
+        for part in piece.text if piece.kind == "text" else (piece,):
+            if not isinstance(part, str):
+                word.append((part,))
                 begun = True
-        if held:
-            word.append(literal(held))
-    if word or begun:
-        found.append(together(word))
-    return found
+            elif part == quote:
+                quote = ""
+            elif not quote and part in "'\"":
+                quote, begun = part, True
+            elif not quote and part.isspace():
+                found += [together(word)] if begun else []
+                word, begun = [], False
+            else:
+                word.append(literal(part))
+                begun = True
+    return [*found, together(word)] if begun else found
