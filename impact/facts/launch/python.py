@@ -247,13 +247,9 @@ class Walker:
 
     def turns(self, over: Any) -> list[Any] | None:
         """What a loop walks through, None when that is not known."""
-        if isinstance(over, Pairs):
-            items = [key for key, _ in over.items]
-        elif isinstance(over, Items):
-            items = over.items
-        else:
+        if not isinstance(over, (Items, Pairs)) or len(over.items) > MOST_TURNS:
             return None
-        return items if len(items) <= MOST_TURNS else None
+        return [key for key, _ in over.items] if isinstance(over, Pairs) else over.items
 
     def run_While(self, statement: ast.While) -> None:
         self.under(
@@ -790,7 +786,7 @@ class Walker:
             return value.value if isinstance(value, FilledFile) else self.text(value.value, node)
         if isinstance(value, Either):
             return (ValuePart("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
-        if isinstance(value, Items) and not value.is_launch:
+        if isinstance(value, Items) and value.kind != "launch":
             return together([self.text(item, node) for item in value.items])
         if isinstance(value, Unknown):
             return (other(value.source),)

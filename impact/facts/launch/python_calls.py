@@ -284,7 +284,7 @@ def _group(call: LaunchCall) -> Any:
 
 def _include(call: LaunchCall) -> Any:
     source = call.get(0, "launch_description_source")
-    if isinstance(source, Items) and source.is_launch:
+    if isinstance(source, Items) and source.kind == "launch":
         return call.group(call.actions(source))
     return call.action("include", call.attributes(("file", source)), _passed(call, call.get(1, "launch_arguments")))
 
