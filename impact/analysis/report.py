@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.console import counted
 from ..rules.rule import Finding, Rule
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..targets.resolve import Chosen
     from ..tree import Tree
     from .downstream import Impact
+    from .target_compare import UpgradeItem
 
 CONTEXT = 1
 _KEPT_FILES = 32
@@ -183,14 +184,7 @@ def fresh(report: Report) -> list[Finding]:
     return [finding for finding in report.findings if finding.new]
 
 
-class Graded(Protocol):
-    """Something that has a severity: a finding, or several with one cause."""
-
-    @property
-    def severity(self) -> str: ...
-
-
-def count_by_severity(graded: Iterable[Graded]) -> dict[str, int]:
+def count_by_severity(graded: Iterable[Finding | UpgradeItem]) -> dict[str, int]:
     """How many errors, warnings and notes, in this order, zeros included."""
     counts = {"error": 0, "warning": 0, "note": 0}
     for one in graded:
@@ -198,7 +192,7 @@ def count_by_severity(graded: Iterable[Graded]) -> dict[str, int]:
     return counts
 
 
-def severities_text(graded: Iterable[Graded], between: str = ", ") -> str:
+def severities_text(graded: Iterable[Finding | UpgradeItem], between: str = ", ") -> str:
     """`2 errors, 1 note`; empty without any."""
     return between.join(counted(number, name) for name, number in count_by_severity(graded).items() if number)
 

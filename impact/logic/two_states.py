@@ -5,7 +5,6 @@ It is the comparison that `logic` makes of a commit and its parent, on workspace
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -17,7 +16,7 @@ from ..facts.kinds import FLOW
 from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
 from .changes import LogicChange, Side
-from .history import PackageFile, PackageState
+from .history import PackageFile, PackageState, key_of
 from .statements import PackageStatements, kind_of_facts
 from .states import Digests, compared, digest_row, unread_digest
 
@@ -103,7 +102,6 @@ def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str
 def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> PackageState:
     """A package as `logic` knows it: its key is the same there for the same content."""
     ros = 2 if package.build_type.startswith("ament") else 1
-    stamp = hashlib.sha1(f"{package.name} {ros}\n".encode())
     files: list[PackageFile] = []
     for path, content, kind in listed:
         if kind == "script":
@@ -111,8 +109,7 @@ def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, s
                 continue
             kind = "python"
         files.append(PackageFile(path, content, kind))
-        stamp.update(f"{path} {content} {kind}\n".encode("utf-8", "surrogateescape"))
-    return PackageState(package.name, package.path, ros, tuple(files), stamp.digest())
+    return PackageState(package.name, package.path, ros, tuple(files), key_of(package.name, ros, files))
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:

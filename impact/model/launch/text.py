@@ -54,8 +54,7 @@ def within(namespace: LaunchText, name: LaunchText) -> LaunchText:
     if namespace.value is None or name.value is None:
         both = together((namespace, name), "/")
         return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return LaunchText(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
-                every((namespace.assumed, name.assumed)))  # fmt: skip
+    return known(joined(namespace.value, name.value), every((namespace.assumed, name.assumed)))
 
 
 _MOST = 200
