@@ -1,14 +1,17 @@
 """What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
 
-from collections.abc import Iterable, Iterator, Sequence
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 import msgspec
 
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
+from ..facts.store import Store
 from ..logic.code_changes import ChangedFunction, changed_functions
 from ..logic.history import PackageFile
 from ..logic.states import renamed_words
@@ -18,9 +21,10 @@ from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
 from ..model.flow.select import kind_of
-from ..model.flow.workspace import flow_of
+from ..model.flow.workspace import flow_of, linked
 from ..model.workspace import Workspace
 from .message_changes import holding, message_changes
+from .session import link_flow, open_tree
 
 Kind = Literal["message", "topic", "condition", "trigger", "callback"]
 KINDS: tuple[Kind, ...] = ("message", "condition", "trigger", "topic", "callback")
@@ -430,3 +434,32 @@ def chosen(
         and (not nodes or any(name and fits(name, nodes) for name in names(effect)))
     )
     return msgspec.structs.replace(impact, effects=effects)
+
+
+class ImpactResult(NamedTuple):
+    """What was found; what the workspace and its base are called; and what to know about the base."""
+
+    impact: Impact
+    root: str
+    rev: str
+    base: str
+    notes: tuple[str, ...]
+
+
+def reached(
+    path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+) -> ImpactResult:  # fmt: skip
+    """What the changes since the base reach in the workspace at a path.
+
+    base, rev, jobs, follow_links: as for check. progress: called with (done, total) bytes while files are
+    parsed. Raises CheckError, TreeError and BaseError with a text for the user.
+    """
+    from .revision_compare import base_tree
+
+    tree = open_tree(path, rev, follow_links=follow_links)
+    with Store() as store:
+        old_tree, notes = base_tree(tree, tuple(base))
+        now = link_flow(path, tree, store, jobs, progress)
+        before = linked(old_tree, store, jobs)
+        return ImpactResult(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

@@ -14,8 +14,7 @@ def impact(
     """What the changes since a base reach."""
     if not base:
         raise UserError("--base: missing; give the revision to compare with, such as origin/main")
-    from ..analysis.downstream import chosen
-    from ..analysis.impact import reached
+    from ..analysis.downstream import chosen, reached
     from ..report import impact as report
 
     progress = None if quiet else progress_bar()

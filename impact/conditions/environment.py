@@ -80,13 +80,6 @@ def numbers_of(version: str) -> tuple[int, ...]:
     return tuple(int(part) for part in found.group(1).split(".")) if found else ()
 
 
-def _compare(left: tuple[int, ...], right: tuple[int, ...]) -> int:
-    """-1, 0 or 1; missing components count as zero."""
-    size = max(len(left), len(right))
-    a, b = left + (0,) * (size - len(left)), right + (0,) * (size - len(right))
-    return (a > b) - (a < b)
-
-
 def against(version: str | None, wanted: tuple[int, ...]) -> int | None:
     """How a version compares with numbers asked for: -1, 0, 1, or None where it is not known finely enough."""
     known = numbers_of(version) if version else ()
@@ -94,4 +87,6 @@ def against(version: str | None, wanted: tuple[int, ...]) -> int | None:
         return None
     if len(known) < len(wanted) and known == wanted[: len(known)] and any(wanted[len(known) :]):
         return None
-    return _compare(known, wanted)
+    size = max(len(known), len(wanted))
+    left, right = (each + (0,) * (size - len(each)) for each in (known, wanted))
+    return (left > right) - (left < right)

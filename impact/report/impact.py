@@ -8,8 +8,7 @@ from typing import Any
 import msgspec
 
 from ...edges.console import counted, json_text
-from ..analysis.downstream import KINDS, Effect, Hop, Impact
-from ..analysis.impact import ImpactResult
+from ..analysis.downstream import KINDS, Effect, Hop, Impact, ImpactResult
 from .columns import LinePart, laid_out
 from .graph.text import WIDE, coverage_lines
 from .markdown_text import code, escaped

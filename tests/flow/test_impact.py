@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.downstream import NOTHING, Impact, chosen, impact_of
-from rosimpact.impact.analysis.impact import ImpactResult
+from rosimpact.impact.analysis.downstream import NOTHING, Impact, ImpactResult, chosen, impact_of
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.workspace import linked
 from rosimpact.impact.report import impact as impact_report

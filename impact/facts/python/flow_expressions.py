@@ -146,9 +146,6 @@ class Expressions(SourceText):
                 if one is not None:
                     self.visit(one)
 
-    def visit_Constant(self, node) -> None:
-        pass
-
     def visit_Name(self, node: ast.Name) -> None:
         name = node.id
         if name in self.locals or self.sees(name):

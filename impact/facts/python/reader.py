@@ -133,11 +133,6 @@ class PythonReader(ObjectUses, SourceText):
                 if one is not None:
                     self.visit(one)
 
-    def visit_Pass(self, node) -> None:
-        pass
-
-    visit_Break = visit_Continue = visit_Pass
-
     def column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
         if line > len(self.lines):
