@@ -7,6 +7,7 @@ what is only known at launch are walked both, and what they add stands under the
 from __future__ import annotations
 
 import ast
+import string
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -742,8 +743,6 @@ class Walker:
         return Unknown(source_of(node))
 
     def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        import string
-
         pattern = plain(value)
         if pattern is None:
             return Unknown(source_of(node))
@@ -758,9 +757,8 @@ class Walker:
                     return Unknown(source_of(node))
                 if field == "":
                     field, place = str(place), place + 1
-                given = (
-                    arguments[int(field)] if field.isdigit() and int(field) < len(arguments) else keywords.get(field)
-                )
+                is_place = field.isdigit() and int(field) < len(arguments)
+                given = arguments[int(field)] if is_place else keywords.get(field)
                 if given is None:
                     return Unknown(source_of(node))
                 values.append(self.text(given, node))
@@ -828,9 +826,8 @@ STRING_METHODS = frozenset(
 
 def _continues(body: Sequence[ast.stmt]) -> bool:
     """Whether the jump that ends a turn of a loop goes on with the next."""
-    return any(isinstance(node, ast.Continue) for statement in body for node in ast.walk(statement)) and not any(
-        isinstance(node, (ast.Break, ast.Return)) for statement in body for node in ast.walk(statement)
-    )
+    kinds = {node.__class__ for statement in body for node in ast.walk(statement)}
+    return ast.Continue in kinds and kinds.isdisjoint((ast.Break, ast.Return))
 
 
 _STATEMENTS = node_methods(Walker, "run_")
