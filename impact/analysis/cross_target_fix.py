@@ -5,18 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cmp_to_key
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from ..model.view import TargetView
 from ..rules.rule import Finding
 from ..targets.changes import version_of
 from ..targets.evidence import holds_on, seen_on
 from ..targets.evidence_record import Evidence, OnTarget
 from ..targets.providers.version_macros import version_test
 from ..targets.version import at_least, compare
-
-if TYPE_CHECKING:
-    from ..model.view import TargetView
-
 
 _CMAKE = ("cmake", "command", "target", "variable")
 

@@ -7,17 +7,15 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import lru_cache
 from hashlib import blake2b
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
+from ..config import PathSetting
 from ..facts.place import Allow
 from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
 from ..rules.severity import Doubt
 from ..rules.text import Value, attributed
-
-if TYPE_CHECKING:
-    from ..config import PathSetting
 
 _MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")

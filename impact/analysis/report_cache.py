@@ -10,12 +10,12 @@ import contextlib
 import hashlib
 import os
 import time
-from typing import TYPE_CHECKING
 
 import msgspec
 
 from ...edges.version import __version__
-from ..facts.store import encodable
+from ..config import Config
+from ..facts.store import Store, encodable
 from ..rules.rule import Finding, all_rules
 from ..source_keys import code_stamp
 from ..targets.snapshot import data_stamp, updated_folder
@@ -23,10 +23,6 @@ from ..tree import WorkingTree
 from ..tree.paths import blob_id
 from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
-
-if TYPE_CHECKING:
-    from ..config import Config
-    from ..facts.store import Store
 
 
 class _Kept(msgspec.Struct, frozen=True, array_like=True):

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges import processes
 from ...edges.console import unforeseen
+from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
 from . import result_cache
 from .findings import lower_repeats
-
-if TYPE_CHECKING:
-    from ..model.workspace import Workspace
-    from .session import OpenedWorkspace
+from .session import OpenedWorkspace
 
 # Starting processes costs about as much as running the rules on this many packages for one target.
 _ALONE = 16

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
 from ..analysis.report import Report
+from ..analysis.target_compare import UpgradeItem
+from ..rules.rule import Finding
 from . import json
 from .style import Style, painted
 from .text import finding_lines, place_of
-
-if TYPE_CHECKING:
-    from ..analysis.target_compare import UpgradeItem
-    from ..rules.rule import Finding
 
 _PLACES = 5
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
+from ..analysis.machine_compare import DependencyUse, Machines
 from ..analysis.report import ReportedTarget, cells, severities_text
 from . import json
 from .columns import LinePart, laid_out
 from .items import as_data, item_lines
 from .style import Style, painted
 from .text import described
-
-if TYPE_CHECKING:
-    from ..analysis.machine_compare import DependencyUse, Machines
 
 SCHEMA = 1
 _TAKES = {

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
 from ..analysis.report import count_by_severity, coverage_text, severities_text
+from ..analysis.target_compare import UpgradeItem
+from ..analysis.upgrade import Upgrade
 from . import html, json
 from .items import as_data, item_lines, short_lines
 from .page import page
 from .style import Style, painted
 from .text import described, heading
-
-if TYPE_CHECKING:
-    from ..analysis.target_compare import UpgradeItem
-    from ..analysis.upgrade import Upgrade
 
 SCHEMA = 1
 
