@@ -357,8 +357,10 @@ class Filling:
         return known(str(result), every(used))
 
 
-OF_RUNNING: dict[str, str] = dict.fromkeys(("textfile", "binfile", "content"), "the content of a file")
-OF_RUNNING["command"] = "the output of a command"
+OF_RUNNING: dict[str, str] = {
+    **dict.fromkeys(("textfile", "binfile", "content"), "the content of a file"),
+    "command": "the output of a command",
+}
 """What is only known when the launch runs, by the piece or attribute that asks for it."""
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
 _FILLING = methods_of(Filling, "fill_")
