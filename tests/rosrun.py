@@ -30,8 +30,8 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
         elif not old.startswith("__"):
             remaps.append(Remap(known(old), known(new), _HERE))
     started = Started(
-        "node", 1, known(package), known(executable), known(""), known(""), known(name), known(namespace),
-        tuple(remaps), tuple(private), tuple(map(known, words)), (), (), (), _HERE, (),
+        "node", 1, _HERE, (), (), (), (), package=known(package), executable=known(executable), name=known(name),
+        namespace=known(namespace), remaps=tuple(remaps), settings=tuple(private), arguments=tuple(map(known, words)),
     )  # fmt: skip
     full = f"{namespace.rstrip('/')}/{name or executable}"
     server = {f"{full}/{setting.name}": setting._replace(name=f"{full}/{setting.name}") for setting in private}

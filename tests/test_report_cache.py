@@ -52,7 +52,7 @@ def reported(checked) -> tuple:
     report = checked.report
     return (
         *(report.findings, report.suppressed, report.known, report.coverage, report.packages, report.targets),
-        *([rule.name for rule in report.rules], report.failure, checked.originals),
+        *([rule.name for rule in report.rules()], report.failure, checked.originals),
     )
 
 

@@ -6,15 +6,12 @@ import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ..rules.rule import Finding
 from ..tree import Tree, WorkingTree
 from . import report_cache
 from .report import Checked, Report
 from .session import DEFAULTS, CheckError, Options, Progress, link_workspace, read_workspace
-
-if TYPE_CHECKING:
-    from ..rules.rule import Finding
 
 
 def check(

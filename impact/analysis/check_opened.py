@@ -97,7 +97,8 @@ def check_opened(
         found, known = split_by_baseline(found, read_baseline(options.baseline))
     notes += store.notes
     failures = [] if workspace.packages else [explain_nothing_analysed(path, opened)]
-    failures += [f"the rule {rule} failed{format_targets(crashed[rule, why])}: {why}" for rule, why in crashed]
+    for (rule, why), failed_on in crashed.items():
+        failures.append(f"the rule {rule} failed{' on ' if failed_on else ''}{', '.join(failed_on)}: {why}")
     report = Report(
         version=__version__,
         data=targets[0].target.data_date if targets else "",
@@ -110,7 +111,7 @@ def check_opened(
         packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
         suppressed=tuple(now.suppressed),
         known=tuple(known),
-        rules=tuple(chosen.values()),
+        rules=lambda: tuple(chosen.values()),
         seconds=time.perf_counter() - started,
         excerpt=sources.excerpt,
         root=os.fspath(path),
@@ -219,11 +220,6 @@ def run_and_merge(
             [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
         )
     return result._replace(kept=kept)
-
-
-def format_targets(targets: Sequence[str]) -> str:
-    """` on jazzy, robot`, empty without targets."""
-    return f" on {', '.join(targets)}" if targets else ""
 
 
 def is_right_on(action: FixAction, view: TargetView) -> bool:

@@ -4,18 +4,16 @@ they need different names."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cmp_to_key
+from typing import NamedTuple
 
+from ..model.view import TargetView
 from ..rules.rule import Finding
 from ..targets.changes import version_of
 from ..targets.evidence import holds_on, seen_on
 from ..targets.evidence_record import Evidence, OnTarget
 from ..targets.providers.version_macros import version_test
-from ..targets.version import at_least
-
-if TYPE_CHECKING:
-    from ..model.view import TargetView
-
+from ..targets.version import at_least, compare
 
 _CMAKE = ("cmake", "command", "target", "variable")
 
@@ -134,11 +132,7 @@ def _boundary(
 
 
 def _lowest(versions: Iterable[str]) -> str:
-    found = ""
-    for version in versions:
-        if not found or not at_least(version, found):
-            found = version
-    return found
+    return min(versions, key=cmp_to_key(compare), default="")
 
 
 def _guarded(split: Split) -> str:

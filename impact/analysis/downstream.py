@@ -1,26 +1,30 @@
 """What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 import msgspec
 
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
+from ..facts.store import Store
 from ..logic.code_changes import ChangedFunction, changed_functions
 from ..logic.history import PackageFile
 from ..logic.states import renamed_words
-from ..logic.two_states import Differing, differing, flow_facts, publishing
+from ..logic.two_states import Differing, bytes_of, differing, flow_facts, publishing
 from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
 from ..model.flow.select import kind_of
-from ..model.flow.workspace import flow_of
+from ..model.flow.workspace import flow_of, linked
 from ..model.workspace import Workspace
 from .message_changes import holding, message_changes
+from .session import link_flow, open_tree
 
 Kind = Literal["message", "topic", "condition", "trigger", "callback"]
 KINDS: tuple[Kind, ...] = ("message", "condition", "trigger", "topic", "callback")
@@ -75,9 +79,8 @@ class Impact(msgspec.Struct, frozen=True):
 
     @property
     def reached(self) -> set[str]:
-        """Ids of all nodes that are changed or reached."""
-        found = {node for effect in self.effects for node in effect.nodes}
-        return found | {hop.node for effect in self.effects for hop in effect.reaches}
+        """Ids of all nodes downstream of a change."""
+        return {hop.node for effect in self.effects for hop in effect.reaches}
 
 
 NOTHING = Impact((), (), 0, 0, Coverage(0, 0, 0, 0))
@@ -161,8 +164,7 @@ class _Reading:
         found += self.callbacks()
         ordered = sorted(found, key=lambda one: (KINDS.index(one.kind), one.package, one.path, one.line, one.subject))
         effects = tuple(dict.fromkeys(ordered))
-        used = {node for effect in effects for node in effect.nodes}
-        used |= {hop.node for effect in effects for hop in effect.reaches}
+        used = {id for effect in effects for id in (*effect.nodes, *(hop.node for hop in effect.reaches))}
         nodes = {node.id: node for node in (*self.before.nodes, *self.now.nodes)}
         kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
         return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)
@@ -362,9 +364,8 @@ class _Reading:
         found, was = self.differing, self.was
         old, new = self.facts
         result: list[ChangedFunction] = []
-        read = _reader(self.base), _reader(self.workspace)
-        texts = {file.id: read[0](was[id(file)]) for _, file, _ in found.changed() if file is not None}
-        texts |= {file.id: read[1](path) for path, _, file in found.changed()}
+        texts = {file.id: bytes_of(self.base, was[id(file)]) for _, file, _ in found.changed() if file is not None}
+        texts |= {file.id: bytes_of(self.workspace, path) for path, _, file in found.changed()}
         words = renamed_words(found.old, found.new, found.renamed, lambda file: texts.get(file.id, b""))
         for path, before, after in found.changed():
             facts = _facts(new, path)
@@ -391,16 +392,6 @@ def _leads(led: Sequence[Led]) -> str:
     if one.steps == 0:
         return f"the callback of {of}{detail}{more}"
     return f"called from `{one.callback.name}`, the callback of {of}{detail}{more}"
-
-
-def _reader(workspace: Workspace) -> Callable[[str], bytes]:
-    def read(path: str) -> bytes:
-        try:
-            return workspace.read(path)
-        except OSError:
-            return b""
-
-    return read
 
 
 def _facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:
@@ -443,3 +434,32 @@ def chosen(
         and (not nodes or any(name and fits(name, nodes) for name in names(effect)))
     )
     return msgspec.structs.replace(impact, effects=effects)
+
+
+class ImpactResult(NamedTuple):
+    """What was found; what the workspace and its base are called; and what to know about the base."""
+
+    impact: Impact
+    root: str
+    rev: str
+    base: str
+    notes: tuple[str, ...]
+
+
+def reached(
+    path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+) -> ImpactResult:  # fmt: skip
+    """What the changes since the base reach in the workspace at a path.
+
+    base, rev, jobs, follow_links: as for check. progress: called with (done, total) bytes while files are
+    parsed. Raises CheckError, TreeError and BaseError with a text for the user.
+    """
+    from .revision_compare import base_tree
+
+    tree = open_tree(path, rev, follow_links=follow_links)
+    with Store() as store:
+        old_tree, notes = base_tree(tree, tuple(base))
+        now = link_flow(path, tree, store, jobs, progress)
+        before = linked(old_tree, store, jobs)
+        return ImpactResult(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

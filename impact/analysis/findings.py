@@ -7,17 +7,15 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import lru_cache
 from hashlib import blake2b
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
+from ..config import PathSetting
 from ..facts.place import Allow
 from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
 from ..rules.severity import Doubt
 from ..rules.text import Value, attributed
-
-if TYPE_CHECKING:
-    from ..config import PathSetting
 
 _MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
@@ -40,10 +38,6 @@ class Suppression(NamedTuple):
 
 class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
-
-
-def _never(fix: tuple[FixAction, ...], target: str) -> bool:
-    return False
 
 
 def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
@@ -77,7 +71,7 @@ def merge_diagnostics(
     targets: Sequence[str],
     rules: Mapping[str, Rule],
     line_text: Callable[[str, int], str],
-    holds: Callable[[tuple[FixAction, ...], str], bool] = _never,
+    holds: Callable[[tuple[FixAction, ...], str], bool] = lambda fix, target: False,
 ) -> list[Finding]:
     """One fact about several targets becomes one finding.
 
@@ -484,11 +478,9 @@ def format_baseline(findings: Iterable[Finding]) -> str:
 
     Only `fingerprint` and `count` are read again; the rest is for the person who reviews the file.
     """
-    counts: Counter[str] = Counter()
-    facts: dict[str, Finding] = {}
-    for finding in findings:
-        counts[finding.fingerprint] += 1
-        facts.setdefault(finding.fingerprint, finding)
+    known = list(findings)
+    counts = Counter(finding.fingerprint for finding in known)
+    facts = {finding.fingerprint: finding for finding in reversed(known)}
     entries = [
         {
             "rule": finding.rule,
@@ -508,12 +500,8 @@ def read_baseline(text: str | bytes) -> Counter[str]:
         data = load_json(text)
         if data["schema"] != 1:
             raise SettingsError(f"the baseline has schema {data['schema']}; this version reads schema 1")
-        return Counter(
-            {
-                str(entry["fingerprint"]): max(0, min(int(entry.get("count", 1)), _MOST_OF_ONE))
-                for entry in data["findings"]
-            }
-        )
+        counts = ((str(entry["fingerprint"]), int(entry.get("count", 1))) for entry in data["findings"])
+        return Counter({fingerprint: max(0, min(count, _MOST_OF_ONE)) for fingerprint, count in counts})
     except SettingsError:
         raise
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
@@ -526,11 +514,8 @@ def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple
     fresh: list[Finding] = []
     old: list[Finding] = []
     for finding in findings:
-        if left[finding.fingerprint] > 0:
-            left[finding.fingerprint] -= 1
-            old.append(finding)
-        else:
-            fresh.append(finding)
+        (old if left[finding.fingerprint] > 0 else fresh).append(finding)
+        left[finding.fingerprint] -= 1
     return fresh, old
 
 

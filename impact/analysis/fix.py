@@ -281,10 +281,13 @@ def insert_lines(path: str, data: bytes, line: int, text: str) -> Edit | None:
     if start == len(data):
         return None
     end = data.find(b"\n", start)
+    return _behind(path, data, start, end, text, ending if end < 0 else _ending(data, start))
+
+
+def _behind(path: str, data: bytes, start: int, end: int, text: str, ending: str) -> Edit:
+    """The edit that puts lines behind those of a place, indented as the first of them is. end: of the last, or -1."""
     own = data[start : len(data) if end < 0 else end]
     indent = own[: len(own) - len(own.lstrip(b" \t"))].decode("ascii")
-    if end >= 0:
-        ending = "\r\n" if own.endswith(b"\r") else "\n"
     lines = ending.join(indent + each if each else each for each in text.split("\n"))
     if end < 0:
         return Edit(path, len(data), len(data), ending + lines)
@@ -304,19 +307,12 @@ def _behind_command(path: str, data: bytes, line: int, text: str) -> Edit | None
             depth += 1
         elif match[0] == b")":
             depth -= 1
-            end = data.find(b"\n", match.end())
-            end = len(data) if end < 0 else end
             if depth or match.end() <= start:
                 continue
-            if opened > end or not _CMAKE_REST.match(data[match.end() : end]):
+            end = data.find(b"\n", match.end())
+            if not _CMAKE_REST.match(data[match.end() : len(data) if end < 0 else end]):
                 return None
-            own = data[opened:end]
-            indent = own[: len(own) - len(own.lstrip(b" \t"))].decode("ascii")
-            ending = _ending(data, opened)
-            lines = ending.join(indent + each if each else each for each in text.split("\n"))
-            if end == len(data):
-                return Edit(path, end, end, ending + lines)
-            return Edit(path, end + 1, end + 1, lines + ending)
+            return _behind(path, data, opened, end, text, _ending(data, opened))
     return None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.console import counted
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..targets.resolve import Chosen
     from ..tree import Tree
     from .downstream import Impact
+    from .target_compare import UpgradeItem
 
 CONTEXT = 1
 _KEPT_FILES = 32
@@ -56,16 +57,12 @@ class Coverage(NamedTuple):
     unresolved: Mapping[str, int] = {}
 
 
-def _no_excerpt(path: str, line: int) -> list[str]:
-    return []
-
-
 class Report(NamedTuple):
     """One run. Findings come sorted by path and line.
 
     version: of the tool. data: ISO day of the shipped data. suppressed: silenced by allow comments. known: in the
-    baseline. rules: those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or 1)
-    to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
+    baseline. rules: gives those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or
+    1) to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
     empty without one. failure: why the run failed, empty when it did not. impact: what the changes since
     the base reach in the message flow, None without a base. seconds: wall time.
     """
@@ -78,9 +75,9 @@ class Report(NamedTuple):
     packages: tuple[ReportedPackage, ...] = ()
     suppressed: tuple[Finding, ...] = ()
     known: tuple[Finding, ...] = ()
-    rules: Sequence[Rule] = ()
+    rules: Callable[[], Iterable[Rule]] = tuple
     seconds: float = 0.0
-    excerpt: Callable[[str, int], list[str]] = _no_excerpt
+    excerpt: Callable[[str, int], list[str]] = lambda path, line: []
     root: str = "."
     base: str = ""
     failure: str = ""
@@ -187,12 +184,17 @@ def fresh(report: Report) -> list[Finding]:
     return [finding for finding in report.findings if finding.new]
 
 
-def count_by_severity(findings: Iterable[Finding]) -> dict[str, int]:
+def count_by_severity(graded: Iterable[Finding | UpgradeItem]) -> dict[str, int]:
     """How many errors, warnings and notes, in this order, zeros included."""
     counts = {"error": 0, "warning": 0, "note": 0}
-    for finding in findings:
-        counts[finding.severity] = counts.get(finding.severity, 0) + 1
+    for one in graded:
+        counts[one.severity] = counts.get(one.severity, 0) + 1
     return counts
+
+
+def severities_text(graded: Iterable[Finding | UpgradeItem], between: str = ", ") -> str:
+    """`2 errors, 1 note`; empty without any."""
+    return between.join(counted(number, name) for name, number in count_by_severity(graded).items() if number)
 
 
 def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:

@@ -10,24 +10,19 @@ import contextlib
 import hashlib
 import os
 import time
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import msgspec
 
 from ...edges.version import __version__
-from ..facts.store import encodable
-from ..rules.rule import Finding, Rule
+from ..config import Config
+from ..facts.store import Store, encodable
+from ..rules.rule import Finding, all_rules
 from ..source_keys import code_stamp
 from ..targets.snapshot import data_stamp, updated_folder
 from ..tree import WorkingTree
 from ..tree.paths import blob_id
 from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
-
-if TYPE_CHECKING:
-    from ..config import Config
-    from ..facts.store import Store
 
 
 class _Kept(msgspec.Struct, frozen=True, array_like=True):
@@ -41,25 +36,6 @@ class _Kept(msgspec.Struct, frozen=True, array_like=True):
     packages: tuple[ReportedPackage, ...]
     rules: tuple[str, ...]
     originals: tuple[tuple[str, str], ...]
-
-
-class _RulesNamed(Sequence):
-    """Rules by their names, loaded when they are asked for."""
-
-    def __init__(self, names: Sequence[str]):
-        self._names = names
-
-    def __len__(self) -> int:
-        return len(self._names)
-
-    def __getitem__(self, at):
-        from ..rules.rule import all_rules
-
-        known = all_rules()
-        return tuple(known[name] for name in self._names)[at]
-
-    def __iter__(self) -> Iterator[Rule]:
-        return iter(self[:])
 
 
 def asks_flow(config: Config, store: Store, options: Options) -> bool:
@@ -132,7 +108,7 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         packages=kept.packages,
         suppressed=kept.suppressed,
         known=kept.known,
-        rules=_RulesNamed(kept.rules),
+        rules=lambda: [all_rules()[name] for name in kept.rules],
         seconds=time.perf_counter() - started,
         excerpt=SourceLines(make_reader(read.tree)).excerpt,
         root=os.fspath(path),
@@ -149,7 +125,7 @@ def store_report(read: Read, key: bytes, checked: Checked) -> None:
         tuple(report.known),
         report.coverage,
         report.packages,
-        tuple(rule.name for rule in report.rules),
+        tuple(rule.name for rule in report.rules()),
         tuple((file, blob_id(data)) for file, data in checked.originals.items()),
     )
     read.store.remember("report", encodable([(key, kept)]))

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges import processes
 from ...edges.console import unforeseen
-from ..rules.rule import Diagnostic, Rule, Scope
+from ..model.workspace import Workspace
+from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
 from . import result_cache
 from .findings import lower_repeats
-
-if TYPE_CHECKING:
-    from ..model.workspace import Workspace
-    from .session import OpenedWorkspace
+from .session import OpenedWorkspace
 
 # Starting processes costs about as much as running the rules on this many packages for one target.
 _ALONE = 16
@@ -51,8 +49,9 @@ def run_rules(
     """
     every = list(rules)
     flow_rules = [rule for rule in every if rule.reads_flow]
+    target_rules = [rule for rule in every if rule.scope == "target"]
     by_target, on_flow = _run_remembered(
-        opened, _of_scope(every, "target"), flow_rules, crashed, before, jobs or processes.cores()
+        opened, target_rules, flow_rules, crashed, before, jobs or processes.cores()
     )
     for rule in every:
         if rule.scope == "target":
@@ -68,10 +67,6 @@ def run_rules(
             yield from ((name, "", each) for name, each in on_flow if name == rule.name)
         else:
             yield from ((rule.name, "", each) for each in _run_safely(rule, "", crashed, _bind(rule, opened, before)))
-
-
-def _of_scope(rules: Iterable[Rule], scope: Scope) -> list[Rule]:
-    return [rule for rule in rules if rule.scope == scope]
 
 
 def _run_remembered(

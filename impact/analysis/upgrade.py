@@ -73,7 +73,7 @@ def upgrade(
         if name not in folders:
             raise CheckError(f"--packages {name}: the workspace has no such package")
     wanted = set(packages or ("", *order))
-    warning = {rule.name for rule in report.rules if Doubt.DEPRECATED in rule.doubts}
+    warning = {rule.name for rule in report.rules() if Doubt.DEPRECATED in rule.doubts}
     now, then = ([finding for finding in side.report.findings if finding.package in wanted] for side in (after, before))
     told, lost = compare_findings(now, then), compare_findings(then, now)
     return Upgrade(

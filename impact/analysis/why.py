@@ -18,6 +18,7 @@ from .session import Options, open_workspace
 _MARKS = ("package.xml", "rosimpact.toml", "colcon.meta")
 # How many levels of folders are looked through for a manifest (src/repository/package), and how many names.
 _LEVELS, _LOOKS_AT_MOST = 4, 5_000
+_SHOWN = 12
 _PRODUCTS = frozenset(("build", "install", "devel", "log"))
 
 
@@ -73,9 +74,7 @@ def is_workspace(folder: Path) -> bool:
     return False
 
 
-def answers(
-    name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
-) -> list[WhyAnswer]:  # fmt: skip
+def answers(name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False) -> list[WhyAnswer]:
     """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
     check() does."""
     options = Options(targets=targets, follow_links=follow_links)
@@ -122,16 +121,12 @@ def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[W
         found = [("name", ())]
     target = view.target.name
     here = tuple(
-        _finding_line(each)
+        f"{each.path}:{each.line}: {each.severity}: {each.message} [{each.rule}]"
         for each in findings
         if (f"{each.path}:{each.line}" in used or name == each.subject or f"`{name}`" in each.message)
         and (not each.targets or target in each.targets)
     )
     return [WhyAnswer(target, what, offers, used, undeclared, changes[:8], here) for what, offers in found]
-
-
-def _finding_line(finding: Finding) -> str:
-    return f"{finding.path}:{finding.line}: {finding.severity}: {finding.message} [{finding.rule}]"
 
 
 def _offer(view: TargetView, name: str, package: str) -> NameOffer:
@@ -144,24 +139,13 @@ def _offer(view: TargetView, name: str, package: str) -> NameOffer:
         return NameOffer("package", name, version, target.since(name), "")
     resolution = target.resolve(name)
     if resolution is not None:
-        libraries = [
-            f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)
-        ]
-        return NameOffer(
-            "key",
-            name,
-            ", ".join(libraries),
-            "",
-            f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}",
-        )
+        known = ((library, target.library(library)) for library in view.libraries_of(name))
+        versions = ", ".join(f"{library} {version}" for library, version in known if version)
+        note = f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}"
+        return NameOffer("key", name, versions, "", note)
     last = target.last_distro(name)
-    return NameOffer(
-        "absent",
-        name,
-        "",
-        "",
-        f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there",
-    )
+    note = f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there"
+    return NameOffer("absent", name, "", "", note)
 
 
 def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -202,10 +186,7 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
         lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {visible(name)} PATH")
         return "\n".join(lines)
     used = found[0].used
-    lines.append(f"used at {counted(len(used), 'place')}" + (":" if used else ""))
-    lines += [f"  {place}" for place in used[:12]]
-    if len(used) > 12:
-        lines.append(f"  and {len(used) - 12} more")
+    lines += [f"used at {counted(len(used), 'place')}" + (":" if used else ""), *_first(used)]
     undeclared = sorted({package for answer in found for package in answer.undeclared})
     if undeclared:
         lines.append("not safe: used and not declared in " + ", ".join(undeclared))
@@ -214,15 +195,17 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
     reported = list(dict.fromkeys(line for answer in found for line in answer.findings))
     if reported:
-        lines.append(f"not safe: check reports {counted(len(reported), 'finding')} on it:")
-        lines += [f"  {line}" for line in reported[:12]]
-        if len(reported) > 12:
-            lines.append(f"  and {len(reported) - 12} more")
+        lines += [f"not safe: check reports {counted(len(reported), 'finding')} on it:", *_first(reported)]
     elif used and not undeclared and not gone:
         lines.append(
             "safe: every package that uses it declares it, or something that brings it, and check reports nothing on it"
         )
     return "\n".join(map(visible, lines))
+
+
+def _first(lines: Sequence[str]) -> list[str]:
+    more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
+    return [f"  {line}" for line in (*lines[:_SHOWN], *more)]
 
 
 def _is_gone(change: str, name: str) -> bool:

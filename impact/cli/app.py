@@ -1,5 +1,8 @@
 """The command line: options and help; each command imports what it needs when it runs."""
 
+# Typer reads what options are from the defaults of arguments.
+# ruff: noqa: B008
+
 import gc
 import io
 import sys
@@ -20,7 +23,6 @@ from ...corpus.cli import app as corpus_app
 from ...corpus.cli import set_suggester
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
 from .dev import app as dev_app
-from .study import app as study_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -29,26 +31,34 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-env_app = typer.Typer(
-    help="Machines: capture this machine as a target, compare two machines.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
-data_app = typer.Typer(
-    help="The shipped distro data: show its date, rebuild it, update it.", no_args_is_help=True, rich_markup_mode=None
-)
-surface_app = typer.Typer(
-    help="What versions of packages offer, and what changed between them.", no_args_is_help=True, rich_markup_mode=None
-)
-app.add_typer(env_app, name="env")
-app.add_typer(surface_app, name="surface")
-app.add_typer(data_app, name="data")
+
+
+def _group(name: str, help: str) -> typer.Typer:
+    """A group of commands, which those below are added to."""
+    group = typer.Typer(help=help, no_args_is_help=True, rich_markup_mode=None)
+    app.add_typer(group, name=name)
+    return group
+
+
+env_app = _group("env", "Machines: capture this machine as a target, compare two machines.")
+surface_app = _group("surface", "What versions of packages offer, and what changed between them.")
+data_app = _group("data", "The shipped distro data: show its date, rebuild it, update it.")
 app.add_typer(corpus_app, name="corpus")
 set_suggester(suggest_label)
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
-app.add_typer(study_app, name="study")
+study_app = _group("study", "The study: its notebooks, run anew.")
 app.add_typer(dev_app, name="dev", hidden=True)
+
+
+def _option(help: str, *names: str, default: Any = None, **further: Any) -> Any:
+    """An option of a command. names: as they are typed, where that is not the name of the argument."""
+    return typer.Option(default, *names, help=help, **further)
+
+
+def _argument(help: str, *, default: Any = None, **further: Any) -> Any:
+    """An argument of a command."""
+    return typer.Argument(default, help=help, **further)
 
 
 def _schema_option(report: str) -> Any:
@@ -61,7 +71,7 @@ def _schema_option(report: str) -> Any:
             print_answer(import_module(f"...report.{report}", __name__).schema(), "json")
             raise typer.Exit()
 
-    return typer.Option("--schema", callback=show, is_eager=True, help="Print the JSON schema of --format json.")
+    return _option("Print the JSON schema of --format json.", "--schema", default=False, callback=show, is_eager=True)
 
 
 _Workspace = Annotated[Path, typer.Argument(help="Workspace, package or git repository.")]
@@ -82,7 +92,7 @@ _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number o
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
-_WITH_COMMAS = frozenset(("target", "base", "set_"))
+_WITH_COMMAS = frozenset(("target", "base", "set_", "names"))
 
 
 def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -94,7 +104,7 @@ def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[
         def run(**given: Any) -> None:
             given.pop("schema", None)
             for key, kind in get_type_hints(options).items():
-                if kind in (list[str], list[str] | None):
+                if kind == list[str]:
                     given[key] = tuple(given[key] or ()) if key in _WITH_COMMAS else _names(given[key])
             module = import_module(f".{options.__name__.partition('_')[0]}", __package__)
             raise typer.Exit(getattr(module, options.__name__)(**given))
@@ -107,60 +117,42 @@ def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[
 @_command(app)
 def check(
     path: _Workspace = Path("."),
-    target: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--target",
-            "-t",
-            help="jazzy, humble@2024-03-01, envs/laptop.json, a name of rosimpact.toml, robot.dpkg.txt, "
-            "docker:ros:humble. May be repeated.",
-        ),
-    ] = None,
-    format: Annotated[
-        str, typer.Option("--format", "-f", help="One of text, json, sarif, github, markdown, html.")
-    ] = "text",
+    target: list[str] = _option(
+        "jazzy, humble@2024-03-01, envs/laptop.json, a name of rosimpact.toml, robot.dpkg.txt, "
+        "docker:ros:humble. May be repeated.",
+        "--target",
+        "-t",
+    ),
+    format: str = _option("One of text, json, sarif, github, markdown, html.", "--format", "-f", default="text"),
     output: _Output = None,
-    rev: Annotated[str, typer.Option(help="Check this git revision instead of the files on disk.")] = "",
-    base: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Compare with the merge base of this revision (PATH=REV for one repository, or a pinned .repos "
-            "file): only new findings fail."
-        ),
-    ] = None,
-    install: Annotated[
-        Path | None,
-        typer.Option(
-            help="Also check the built files of this install space (or devel space, or prefix of a package) for shared "
-            "libraries that are missing, here or on a target."
-        ),
-    ] = None,
-    select: Annotated[
-        list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
-    ] = None,
-    ignore: Annotated[list[str] | None, typer.Option(help="Skip these rules or families.")] = None,
+    rev: str = _option("Check this git revision instead of the files on disk.", default=""),
+    base: list[str] = _option(
+        "Compare with the merge base of this revision (PATH=REV for one repository, or a pinned .repos file): only "
+        "new findings fail."
+    ),
+    install: Path | None = _option(
+        "Also check the built files of this install space (or devel space, or prefix of a package) for shared "
+        "libraries that are missing, here or on a target."
+    ),
+    select: list[str] = _option("Only these rules or families. May be repeated or comma-separated."),
+    ignore: list[str] = _option("Skip these rules or families."),
     fail_on: _FailOn = "",
-    notes: Annotated[bool, typer.Option("--notes", help="Also show notes in the text report.")] = False,
-    preview: Annotated[
-        bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")
-    ] = False,
-    baseline: Annotated[Path | None, typer.Option(help="Leave out findings that this file contains.")] = None,
-    write_baseline: Annotated[
-        Path | None, typer.Option(help="Write all current findings to this file, and exit with 0.")
-    ] = None,
-    prune_baseline: Annotated[
-        bool, typer.Option("--prune-baseline", help="Remove fixed findings from the file given with --baseline.")
-    ] = False,
-    fix: Annotated[
-        bool,
-        typer.Option("--fix", help="Apply fixes that are correct on all targets, and report what remains."),
-    ] = False,
-    diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change; change nothing.")] = False,
+    notes: bool = _option("Also show notes in the text report.", "--notes", default=False),
+    preview: bool = _option("Also run rules whose precision is not measured yet.", "--preview", default=False),
+    baseline: Path | None = _option("Leave out findings that this file contains."),
+    write_baseline: Path | None = _option("Write all current findings to this file, and exit with 0."),
+    prune_baseline: bool = _option(
+        "Remove fixed findings from the file given with --baseline.", "--prune-baseline", default=False
+    ),
+    fix: bool = _option(
+        "Apply fixes that are correct on all targets, and report what remains.", "--fix", default=False
+    ),
+    diff: bool = _option("Print what --fix would change; change nothing.", "--diff", default=False),
     config: _Config = None,
     follow_links: _FollowLinks = False,
     jobs: _Jobs = None,
     quiet: _Quiet = False,
-    schema: Annotated[bool, _schema_option("json")] = False,
+    schema: bool = _schema_option("json"),
 ) -> None:
     """Report what breaks, on which machine, where, and what to do.
 
@@ -170,17 +162,17 @@ def check(
 
 @_command(app)
 def upgrade(
-    from_: Annotated[str, typer.Option("--from", help="The current target, in any form that --target accepts.")],
-    to: Annotated[str, typer.Option("--to", help="The new target.")],
+    from_: str = _option("The current target, in any form that --target accepts.", "--from", default=...),
+    to: str = _option("The new target.", "--to", default=...),
     path: _Workspace = Path("."),
-    packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
+    packages: list[str] = _option("Only these packages."),
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
+    format: str = _option("One of text, json, html.", "--format", "-f", default="text"),
     output: _Output = None,
     fail_on: _FailOn = "",
-    schema: Annotated[bool, _schema_option("upgrade")] = False,
+    schema: bool = _schema_option("upgrade"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
@@ -192,19 +184,13 @@ def upgrade(
 
 @_command(app)
 def why(
-    name: Annotated[
-        str, typer.Argument(help="A header, package, rosdep key, CMake name, Python module or executable.")
-    ],
-    path: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Workspace whose uses are shown; default: the current folder, if it is a workspace.",
-            show_default=False,
-        ),
-    ] = None,
-    target: Annotated[list[str] | None, typer.Option("--target", "-t", help="As for check.")] = None,
+    name: str = _argument("A header, package, rosdep key, CMake name, Python module or executable.", default=...),
+    path: Path | None = _argument(
+        "Workspace whose uses are shown; default: the current folder, if it is a workspace.", show_default=False
+    ),
+    target: list[str] = _option("As for check.", "--target", "-t"),
     follow_links: _FollowLinks = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    format: str = _option("text or json.", "--format", "-f", default="text"),
 ) -> None:
     """Show which package provides a name on a target, since when, and what uses it in the workspace."""
 
@@ -212,35 +198,20 @@ def why(
 @_command(app)
 def graph(
     path: _Workspace = Path("."),
-    launch: Annotated[
-        str, typer.Option(help="Only what this launch file starts, with the names that it assigns.")
-    ] = "",
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="An argument of the launch file, NAME:=VALUE. May be repeated.")
-    ] = None,
-    node: Annotated[
-        list[str] | None, typer.Option(help="Only this node and its neighbours; `*` matches any text.")
-    ] = None,
-    topic: Annotated[
-        list[str] | None, typer.Option(help="Only this topic, service or action, and the nodes that use it.")
-    ] = None,
-    package: Annotated[list[str] | None, typer.Option(help="Only nodes of this package.")] = None,
-    around: Annotated[str, typer.Option(help="Only what is near this node or topic.")] = "",
-    hops: Annotated[int, typer.Option(min=1, help="With --around: the number of steps from node to node.")] = 2,
+    launch: str = _option("Only what this launch file starts, with the names that it assigns.", default=""),
+    set_: list[str] = _option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
+    node: list[str] = _option("Only this node and its neighbours; `*` matches any text."),
+    topic: list[str] = _option("Only this topic, service or action, and the nodes that use it."),
+    package: list[str] = _option("Only nodes of this package."),
+    around: str = _option("Only what is near this node or topic.", default=""),
+    hops: int = _option("With --around: the number of steps from node to node.", default=2, min=1),
     rev: _Revision = "",
-    base: Annotated[
-        list[str] | None,
-        typer.Option(help="Mark what was added, removed and changed since this revision, as for check."),
-    ] = None,
+    base: list[str] = _option("Mark what was added, removed and changed since this revision, as for check."),
     follow_links: _FollowLinks = False,
-    format: Annotated[
-        str, typer.Option("--format", "-f", help="One of text, json, graphml, dot, mermaid, html.")
-    ] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the graph to this file.")] = None,
-    all: Annotated[
-        bool, typer.Option("--all", help="Also show hidden names and everything that was not resolved.")
-    ] = False,
-    schema: Annotated[bool, _schema_option("graph.json")] = False,
+    format: str = _option("One of text, json, graphml, dot, mermaid, html.", "--format", "-f", default="text"),
+    output: Path | None = _option("Write the graph to this file.", "--output", "-o"),
+    all: bool = _option("Also show hidden names and everything that was not resolved.", "--all", default=False),
+    schema: bool = _schema_option("graph.json"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
@@ -250,26 +221,18 @@ def graph(
 @_command(app)
 def impact(
     path: _Workspace = Path("."),
-    base: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="What changed since the merge base of this revision (PATH=REV for one repository, or a pinned "
-            ".repos file)."
-        ),
-    ] = None,
+    base: list[str] = _option(
+        "What changed since the merge base of this revision (PATH=REV for one repository, or a pinned .repos file)."
+    ),
     rev: _Revision = "",
-    package: Annotated[list[str] | None, typer.Option(help="Only changes in this package. May be repeated.")] = None,
-    topic: Annotated[
-        list[str] | None, typer.Option(help="Only what goes through this topic; `*` matches any text.")
-    ] = None,
-    node: Annotated[
-        list[str] | None, typer.Option(help="Only changes in this node, or that affect it; `*` matches any text.")
-    ] = None,
+    package: list[str] = _option("Only changes in this package. May be repeated."),
+    topic: list[str] = _option("Only what goes through this topic; `*` matches any text."),
+    node: list[str] = _option("Only changes in this node, or that affect it; `*` matches any text."),
     follow_links: _FollowLinks = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
+    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
     output: _Output = None,
-    all: Annotated[bool, typer.Option("--all", help="List every affected node and all unresolved calls.")] = False,
-    schema: Annotated[bool, _schema_option("impact")] = False,
+    all: bool = _option("List every affected node and all unresolved calls.", "--all", default=False),
+    schema: bool = _schema_option("impact"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
@@ -278,16 +241,16 @@ def impact(
 
 @_command(app)
 def logic(
-    repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),
-    range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; default: all up to HEAD.")] = "",
-    commits: Annotated[int | None, typer.Option(min=1, help="Only this many of the newest commits.")] = None,
-    since: Annotated[str, typer.Option(help="Only commits since this day, such as 2024-03-01.")] = "",
-    package: Annotated[list[str] | None, typer.Option(help="Only this package. May be repeated.")] = None,
-    topic: Annotated[list[str] | None, typer.Option(help="Only this topic. May be repeated.")] = None,
-    all: Annotated[bool, typer.Option("--all", help="Also list conditions that were only reworded.")] = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="text, json or html (a timeline).")] = "text",
+    repository: Path = _argument("Git repository, bare or not, or a folder in one.", default=Path(".")),
+    range: str = _option("Commits A..B, or all up to B; default: all up to HEAD.", default=""),
+    commits: int | None = _option("Only this many of the newest commits.", min=1),
+    since: str = _option("Only commits since this day, such as 2024-03-01.", default=""),
+    package: list[str] = _option("Only this package. May be repeated."),
+    topic: list[str] = _option("Only this topic. May be repeated."),
+    all: bool = _option("Also list conditions that were only reworded.", "--all", default=False),
+    format: str = _option("text, json or html (a timeline).", "--format", "-f", default="text"),
     output: _Output = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
+    jobs: int | None = _option("Number of processes.", "--jobs", "-j", min=1),
     quiet: _Quiet = False,
 ) -> None:
     """List the commits that changed when messages are published: which condition or trigger, and whom it affects."""
@@ -295,28 +258,26 @@ def logic(
 
 @_command(app)
 def explain(
-    rule: Annotated[str | None, typer.Argument(help="Name of a rule or group; default: list all rules.")] = None,
+    rule: str | None = _argument("Name of a rule or group; default: list all rules."),
 ) -> None:
     """Explain what a rule does, why it matters, and how to fix its findings."""
 
 
 @_command(env_app, "capture")
 def env_capture(
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="File to write; default: standard output.")
-    ] = None,
+    output: Path | None = _option("File to write; default: standard output.", "--output", "-o"),
 ) -> None:
     """Write this machine as a target."""
 
 
 @_command(env_app, "diff")
 def env_diff(
-    first: Annotated[str, typer.Argument(help="A target, in any form that --target accepts.")],
-    second: Annotated[str, typer.Argument(help="Another target.")],
-    path: Annotated[Path | None, typer.Argument(help="A workspace: show which differences matter to it.")] = None,
-    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    schema: Annotated[bool, _schema_option("machines")] = False,
+    first: str = _argument("A target, in any form that --target accepts.", default=...),
+    second: str = _argument("Another target.", default=...),
+    path: Path | None = _argument("A workspace: show which differences matter to it."),
+    format: str = _option("text or json.", "--format", "-f", default="text"),
+    output: Path | None = _option("Write to this file.", "--output", "-o"),
+    schema: bool = _schema_option("machines"),
 ) -> None:
     """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
 
@@ -327,16 +288,13 @@ _REPOS_OR_SHIPPED = f"{_REPOS_HELP} Default: the shipped data."
 
 @_command(surface_app, "show")
 def surface_show(
-    package: Annotated[
-        str,
-        typer.Argument(
-            help="PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy, PACKAGE@jazzy@2024-08-01 or PACKAGE@/opt/ros/jazzy."
-        ),
-    ],
-    repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
-    all: Annotated[bool, typer.Option("--all", help="Also show members of classes, constants and macros.")] = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
+    package: str = _argument(
+        "PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy, PACKAGE@jazzy@2024-08-01 or PACKAGE@/opt/ros/jazzy.", default=...
+    ),
+    repos: Path | None = _option(_REPOS_OR_SHIPPED),
+    all: bool = _option("Also show members of classes, constants and macros.", "--all", default=False),
+    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
+    output: Path | None = _option("Write to this file.", "--output", "-o"),
     jobs: _Jobs = None,
 ) -> None:
     """Show what a version of a package offers: headers, names, messages, targets, programs."""
@@ -344,18 +302,14 @@ def surface_show(
 
 @_command(surface_app, "diff")
 def surface_diff(
-    what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
-    old: Annotated[
-        str, typer.Argument(help="A version, a distro, an installed prefix or a .deb; for a clone, a revision.")
-    ],
-    new: Annotated[str, typer.Argument(help="The version to compare with, in the same forms.")],
-    repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
-    packages: Annotated[list[str] | None, typer.Option(help="For a clone: only these packages.")] = None,
-    all: Annotated[
-        bool, typer.Option("--all", help="Also list additions, and changes that do not break builds.")
-    ] = False,
-    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
+    what: str = _argument("A package, or the path of a clone (then without --repos).", default=...),
+    old: str = _argument("A version, a distro, an installed prefix or a .deb; for a clone, a revision.", default=...),
+    new: str = _argument("The version to compare with, in the same forms.", default=...),
+    repos: Path | None = _option(_REPOS_OR_SHIPPED),
+    packages: list[str] = _option("For a clone: only these packages."),
+    all: bool = _option("Also list additions, and changes that do not break builds.", "--all", default=False),
+    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
+    output: Path | None = _option("Write to this file.", "--output", "-o"),
     jobs: _Jobs = None,
 ) -> None:
     """Show what changed between two versions: removed, moved and deprecated names, and changed signatures."""
@@ -363,21 +317,16 @@ def surface_diff(
 
 @_command(surface_app, "build")
 def surface_build(
-    distro: Annotated[list[str], typer.Option(help="Read the packages of this distro. May be repeated.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="File to write, such as surfaces.sqlite.")],
-    repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
-    packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
-    all_versions: Annotated[
-        bool,
-        typer.Option("--all-versions", help="Read all versions that the distros ever had, not only the current ones."),
-    ] = False,
-    onto: Annotated[
-        Path | None, typer.Option(help="Also write what this file has of packages, where clones have no more versions.")
-    ] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
-    dask: Annotated[
-        str | None, typer.Option(help="Use the cluster of this Dask scheduler, such as tcp://host:8786.")
-    ] = None,
+    distro: list[str] = _option("Read the packages of this distro. May be repeated.", default=...),
+    output: Path = _option("File to write, such as surfaces.sqlite.", "--output", "-o", default=...),
+    repos: Path = _option(_REPOS_HELP, default=Path(".")),
+    packages: list[str] = _option("Only these packages."),
+    all_versions: bool = _option(
+        "Read all versions that the distros ever had, not only the current ones.", "--all-versions", default=False
+    ),
+    onto: Path | None = _option("Also write what this file has of packages, where clones have no more versions."),
+    jobs: int | None = _option("Number of processes.", "--jobs", "-j", min=1),
+    dask: str | None = _option("Use the cluster of this Dask scheduler, such as tcp://host:8786."),
     quiet: _Quiet = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
@@ -385,23 +334,17 @@ def surface_build(
 
 @_command(data_app, "status")
 def data_status(
-    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    format: str = _option("text or json.", "--format", "-f", default="text"),
 ) -> None:
     """Show the age and the sources of the distro data."""
 
 
 @_command(data_app, "build")
 def data_build(
-    rosdistro: Annotated[
-        Path, typer.Argument(help="Clone of the rosdistro git repository with its tags, bare or not.")
-    ],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write the snapshot to.")],
-    work: Annotated[
-        Path | None, typer.Option(help="Folder for intermediate results; the next run continues from it.")
-    ] = None,
-    meta_ros: Annotated[
-        Path | None, typer.Option(help="Clone of ros/meta-ros, for the dependencies of released packages.")
-    ] = None,
+    rosdistro: Path = _argument("Clone of the rosdistro git repository with its tags, bare or not.", default=...),
+    output: Path = _option("Folder to write the snapshot to.", "--output", "-o", default=...),
+    work: Path | None = _option("Folder for intermediate results; the next run continues from it."),
+    meta_ros: Path | None = _option("Clone of ros/meta-ros, for the dependencies of released packages."),
 ) -> None:
     """Rebuild the snapshot from git repositories."""
 
@@ -409,6 +352,35 @@ def data_build(
 @_command(data_app, "update")
 def data_update() -> None:
     """Update the snapshot over the network, with the rosdistro library."""
+
+
+@_command(study_app, "run")
+def study_run(
+    names: list[str] = _argument("Notebooks, such as 03_updates or 03; all by default."),
+    full: bool = _option("From the reports' texts and all distros, not the small form.", "--full", default=False),
+    reports: Path | None = _option("The reports' texts, JSON Lines; what reads reports needs them with --full."),
+    output: Path = _option(
+        "Folder for the executed notebooks, figures and tables.", "--output", "-o", default=Path("study")
+    ),
+    notebooks: Path | None = _option("Folder of the notebooks, outside a checkout."),
+    quiet: _Quiet = False,
+) -> None:
+    """Run the notebooks and write their figures and tables.
+
+    Exit status: 0 all were made, 1 a notebook failed or made not all of its figures, 2 the tool failed.
+    """
+
+
+@_command(study_app, "predict")
+def study_predict(
+    reports: Path = _option("The reports' texts, JSON Lines.", default=...),
+    output: Path | None = _option("Folder for both files; that of the notebooks by default.", "--output", "-o"),
+    quiet: _Quiet = False,
+) -> None:
+    """Judge every labelled report by a model that has not seen its repository, for 02_triage; ids and numbers only.
+
+    Writes triage_predictions.jsonl and triage_beside.json. It takes some minutes.
+    """
 
 
 def _version(value: bool) -> None:
@@ -421,9 +393,7 @@ def _version(value: bool) -> None:
 
 @app.callback()
 def root(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
+    version: bool = _option("Print the version.", "--version", default=False, callback=_version, is_eager=True),
 ) -> None:
     pass
 

@@ -3,6 +3,7 @@
 import os
 import sys
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 from ...edges.console import UserError, counted, is_obeyed, run_command, say
@@ -197,16 +198,5 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
             PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
         )
         return text.render(report, style)
-    if format == "github":
-        from ..report import github
-
-        return github.render(report, prefix)
-    if format == "json":
-        from ..report import json as reporter
-    elif format == "sarif":
-        from ..report import sarif as reporter
-    elif format == "markdown":
-        from ..report import markdown as reporter
-    else:
-        from ..report import html as reporter
-    return reporter.render(report)
+    reporter = import_module(f"...report.{format}", __name__)
+    return reporter.render(report, prefix) if format == "github" else reporter.render(report)

@@ -3,32 +3,29 @@
 from pathlib import Path
 
 from ...edges.console import counted, escape_json, run_command, say, steps
-from .output import READ_SO_FAR, TEXT_OR_JSON, deliver_answer, print_answer
+from .output import READ_SO_FAR, answers, print_answer
 
 
-def data_status(format: str) -> int:
-    """Prints date, origin and contents of the distro data in use."""
+@answers("text", "json")
+def data_status(format: str) -> str:
+    """Date, origin and contents of the distro data in use."""
+    from ...databuild.snapshot import status
 
-    def answer() -> str:
-        from ...databuild.snapshot import status
+    found = status()
+    if format == "json":
+        import json
 
-        found = status()
-        if format == "json":
-            import json
-
-            return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
-        origin = "updated" if found.updated else "shipped with rosimpact"
-        lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
-        lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
-        if found.last_syncs:
-            newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
-            lines.append(f"newest syncs: {newest}")
-        kept = found.surfaces
-        told_of = f"{counted(kept['packages'], 'package')}, {counted(kept['versions'], 'version')}"
-        lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
-        return "\n".join(lines)
-
-    return deliver_answer(answer, format, TEXT_OR_JSON)
+        return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
+    origin = "updated" if found.updated else "shipped with rosimpact"
+    lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
+    lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
+    if found.last_syncs:
+        newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
+        lines.append(f"newest syncs: {newest}")
+    kept = found.surfaces
+    told_of = f"{counted(kept['packages'], 'package')}, {counted(kept['versions'], 'version')}"
+    lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
+    return "\n".join(lines)
 
 
 def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:

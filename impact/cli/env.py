@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ...edges.console import run_command, say
 from ...edges.version import __version__
-from .output import check_output, deliver, deliver_answer, style_of
+from .output import answers, check_output, deliver, style_of
 
 
 def env_capture(output: Path | None) -> int:
@@ -25,15 +25,11 @@ def env_capture(output: Path | None) -> int:
     return run_command(work, "interrupted; nothing was written", "this machine")
 
 
-def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None) -> int:
-    """Prints what differs between two targets; beside a workspace, what matters to it. Returns the exit status: 0, or 2
-    (failed)."""
+@answers("text", "json")
+def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None) -> str:
+    """What differs between two targets; beside a workspace, what matters to it."""
+    from ..analysis.machine_compare import machines
     from ..report import machines as report
 
-    def answer() -> str:
-        from ..analysis.machine_compare import machines
-
-        found = machines(first, second, path)
-        return report.as_json(found, __version__) if format == "json" else report.text(found, style_of(output))
-
-    return deliver_answer(answer, format, report.FORMATS, output, path or "")
+    found = machines(first, second, path)
+    return report.as_json(found, __version__) if format == "json" else report.text(found, style_of(output))

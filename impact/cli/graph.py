@@ -3,34 +3,29 @@
 from pathlib import Path
 
 from ...edges.console import UserError
-from .output import deliver_answer, progress_bar, say_notes, style_of
-
-GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
+from .output import answers, progress_bar, say_notes, style_of
 
 
+@answers("text", "json", "graphml", "dot", "mermaid", "html")
 def graph(
     path: Path, *, launch, set_, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
     follow_links,
-) -> int:  # fmt: skip
-    """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
+) -> str:  # fmt: skip
+    """The message-flow graph."""
+    given = dict(argument.partition(":=")[::2] for argument in set_)
+    if any(":=" not in argument for argument in set_):
+        raise UserError("--set: write NAME:=VALUE")
+    if given and not launch:
+        raise UserError("--set: arguments belong to a launch file; name it with --launch")
+    from ..analysis.graph import graphs
+    from ..report.graph import draw
 
-    def answer() -> str:
-        given = dict(argument.partition(":=")[::2] for argument in set_)
-        if any(":=" not in argument for argument in set_):
-            raise UserError("--set: write NAME:=VALUE")
-        if given and not launch:
-            raise UserError("--set: arguments belong to a launch file; name it with --launch")
-        from ..analysis.graph import graphs
-        from ..report.graph import draw
-
-        found = graphs(
-            path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-            progress=None if quiet else progress_bar(), follow_links=follow_links,
-        )  # fmt: skip
-        say_notes(found.notes)
-        return draw(
-            found.now, format, found.before, nodes=node, topics=topic, packages=package, around=around,
-            hops=hops, everything=all, style=style_of(output),
-        )  # fmt: skip
-
-    return deliver_answer(answer, format, GRAPH_FORMATS, output, path)
+    found = graphs(
+        path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+        progress=None if quiet else progress_bar(), follow_links=follow_links,
+    )  # fmt: skip
+    say_notes(found.notes)
+    return draw(
+        found.now, format, found.before, nodes=node, topics=topic, packages=package, around=around,
+        hops=hops, everything=all, style=style_of(output),
+    )  # fmt: skip

@@ -5,36 +5,29 @@ from pathlib import Path
 
 from ...edges.console import UserError, steps
 from ...edges.version import __version__
-from .output import deliver_answer, say_notes, style_of
-
-LOGIC_FORMATS = ("text", "json", "html")
+from .output import answers, say_notes, style_of
 
 
+@answers("text", "json", "html", about="repository")
 def logic(
     repository: Path, *, range, commits, since, package, topic, all, format, output, jobs, quiet
-) -> int:  # fmt: skip
-    """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
+) -> str:  # fmt: skip
+    """Where the logic of publishing changed."""
+    from ..facts.store import Store
+    from ..logic import repository as history
+    from ..report import logic as logic_report
+    from ..report import timeline
 
-    def answer() -> str:
-        from ..facts.store import Store
-        from ..logic import repository as history
-        from ..report import logic as logic_report
-        from ..report import timeline
-
-        with Store() as store:
-            try:
-                asked = history.Range(range, commits, since)
-                found = history.read(os.fspath(repository), asked, store, jobs, None if quiet else steps())
-            except ValueError as error:
-                raise UserError(f"--since: {error}") from None
-            say_notes(store.notes)
-        all_of_it, found = found, history.chosen(found, package, topic, all)
-        missed = logic_report.missed(all_of_it, found, package, topic)
-        say_notes([missed] if missed else [])
-        if format == "html":
-            return timeline.render(found, __version__)
-        if format == "json":
-            return logic_report.as_json(found, __version__)
-        return logic_report.text(found, style_of(output))
-
-    return deliver_answer(answer, format, LOGIC_FORMATS, output, repository)
+    with Store() as store:
+        try:
+            asked = history.Range(range, commits, since)
+            found = history.read(os.fspath(repository), asked, store, jobs, None if quiet else steps())
+        except ValueError as error:
+            raise UserError(f"--since: {error}") from None
+        say_notes(store.notes)
+    all_of_it, found = found, history.chosen(found, package, topic, all)
+    missed = logic_report.missed(all_of_it, found, package, topic)
+    say_notes([missed] if missed else [])
+    if format == "html":
+        return timeline.render(found, __version__)
+    return logic_report.as_json(found, __version__) if format == "json" else logic_report.text(found, style_of(output))

@@ -4,37 +4,45 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import wraps
 from pathlib import Path
+from typing import Any
 
 from ...edges.console import UserError, rewrite, run_command, say, visible, write, write_exactly, write_json
 from ...edges.files import check_writable_path, outermost, write_file
 from ..report.style import PLAIN, Style, style_for
 
-TEXT_OR_JSON = ("text", "json")
 READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
 PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
 
 
-def deliver_answer(
-    answer: Callable[[], str],
-    format: str = "text",
-    known: Sequence[str] = ("text",),
-    output: Path | None = None,
-    path: object = "",
-) -> int:
-    """Delivers what a command says, its errors as one line. Returns the exit status: 0, 2 (failed), 130 (interrupted).
+def answers(
+    *formats: str, about: str = "path"
+) -> Callable[[Callable[..., str | tuple[str, int]]], Callable[..., int]]:
+    """Makes a command of a function that gives its answer, or the answer and the exit status: the answer is delivered,
+    an error told in one line. The command returns the exit status: 0 or what is given, 2 (failed), 130 (interrupted).
 
-    answer: makes the text. known: the formats that the command has. path: what an error without a file of its own is
-    about.
+    formats: those of the command. about: the argument that an error without a file of its own is about.
     """
 
-    def work() -> int:
-        one_of("--format", format, known)
-        check_output(output, path)
-        deliver(answer(), output, format, path)
-        return 0
+    def command_of(answer: Callable[..., str | tuple[str, int]]) -> Callable[..., int]:
+        @wraps(answer)
+        def command(**given: Any) -> int:
+            format, output, path = given.get("format", "text"), given.get("output"), given.get(about) or ""
 
-    return run_command(work, READ_SO_FAR, path)
+            def work() -> int:
+                one_of("--format", format, formats or ("text",))
+                check_output(output, path)
+                found = answer(**given)
+                text, status = (found, 0) if isinstance(found, str) else found
+                deliver(text, output, format, path)
+                return status
+
+            return run_command(work, READ_SO_FAR, path)
+
+        return command
+
+    return command_of
 
 
 def one_of(option: str, given: str, known: Sequence[str]) -> None:

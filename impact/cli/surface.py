@@ -1,19 +1,21 @@
 """rosimpact surface."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from ...edges.console import UserError, counted, steps
+from ...edges.console import UserError, counted, run_command, steps
 from ...edges.version import __version__
-from .output import check_output, deliver_answer, say_notes, style_of
+from .output import READ_SO_FAR, answers, check_output, print_answer, say_notes, style_of
 
 
-def surface_show(package: str, *, repos, all, format, output, jobs) -> int:
-    """Prints what a version of a package offers. Returns the exit status: 0, or 2 (failed)."""
+@answers("text", "json", "markdown")
+def surface_show(package: str, *, repos, all, format, output, jobs) -> str:
+    """What a version of a package offers."""
     from ..report import surface as report
 
-    def answer(store) -> str:
+    with _opened_store() as store:
         name, _, asked = package.partition("@")
         source, state = _surface(name, asked, repos, store, jobs)
         surface, hashes = state.surfaces[name], _hashes(name, source.asked, state)
@@ -23,18 +25,15 @@ def surface_show(package: str, *, repos, all, format, output, jobs) -> int:
             return report.show_markdown(surface, source, hashes)
         return report.show_text(surface, source, style_of(output), all, hashes)
 
-    return _of_surfaces(answer, format, output)
 
-
-def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> int:
-    """Prints what changed between two versions of a package, or of all packages of a clone. Returns the exit status:
-    0, or 2 (failed)."""
+@answers("text", "json", "markdown")
+def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> str:
+    """What changed between two versions of a package, or of all packages of a clone."""
+    from ...databuild.surface.clones import Clone
     from ..report import surface as report
+    from ..targets.surface.compare import RepositorySurfaces, compare, compare_states
 
-    def answer(store) -> str:
-        from ...databuild.surface.clones import Clone
-        from ..targets.surface.compare import RepositorySurfaces, compare, compare_states
-
+    with _opened_store() as store:
         if os.path.isdir(what) and repos is None:
             clone = Clone(Path(what))
             states = [RepositorySurfaces(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
@@ -60,13 +59,11 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format,
             return report.diff_markdown(found)
         return report.diff_text(found, style_of(output), all)
 
-    return _of_surfaces(answer, format, output)
-
 
 def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, dask, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
-    def answer() -> str:
+    def work() -> int:
         from ...databuild.surface.clones import Clones
         from ...databuild.surfaces import all_distros, build
 
@@ -83,12 +80,14 @@ def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, 
             raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
         say_notes(built.failed)
         told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
-        return (
+        print_answer(
             f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
-            f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
+            f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone",
+            "text",
         )
+        return 0
 
-    return deliver_answer(answer, path=output)
+    return run_command(work, READ_SO_FAR, output)
 
 
 def _surface(package: str, asked: str, repos: Path | None, store, jobs):
@@ -136,16 +135,11 @@ def _hashes(package: str, asked: str, state) -> dict[str, str]:
     return {name: told for name, told in known if told is not None}
 
 
-def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
-    """Delivers what a command on surfaces says."""
-    from ..report.surface import FORMATS as known
+@contextmanager
+def _opened_store() -> Iterator:
+    """The store of facts, what went wrong with which is said at the end."""
+    from ..facts.store import Store
 
-    def with_store() -> str:
-        from ..facts.store import Store
-
-        with Store() as store:
-            text = answer(store)
-            say_notes(store.notes)
-        return text
-
-    return deliver_answer(with_store, format, known, output)
+    with Store() as store:
+        yield store
+        say_notes(store.notes)

@@ -19,14 +19,6 @@ COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 PARTS = {"MAJOR": 0, "MINOR": 1, "PATCH": 2, "REVISION": 2, "SUBMINOR": 2}
 
 
-def _nothing_known(name: str) -> None:
-    return None
-
-
-def _nothing_gone(kind: str, name: str) -> bool:
-    return False
-
-
 @dataclass(frozen=True, eq=False)
 class Environment:
     """What is known of one machine.
@@ -43,11 +35,11 @@ class Environment:
     ros_version: str = ""
     python: tuple[int, int] | None = None
     codename: str = ""
-    versions: Callable[[str], str | None] = _nothing_known
-    packages: Callable[[str], bool | None] = _nothing_known
-    headers: Callable[[str], bool | None] = _nothing_known
+    versions: Callable[[str], str | None] = lambda name: None
+    packages: Callable[[str], bool | None] = lambda name: None
+    headers: Callable[[str], bool | None] = lambda name: None
     testing: bool | None = None
-    gone: Callable[[str, str], bool] = _nothing_gone
+    gone: Callable[[str, str], bool] = lambda kind, name: False
 
 
 # Names used by macros and CMake variables, in lower case, where they differ from the package's or library's own.
@@ -88,13 +80,6 @@ def numbers_of(version: str) -> tuple[int, ...]:
     return tuple(int(part) for part in found.group(1).split(".")) if found else ()
 
 
-def _compare(left: tuple[int, ...], right: tuple[int, ...]) -> int:
-    """-1, 0 or 1; missing components count as zero."""
-    size = max(len(left), len(right))
-    a, b = left + (0,) * (size - len(left)), right + (0,) * (size - len(right))
-    return (a > b) - (a < b)
-
-
 def against(version: str | None, wanted: tuple[int, ...]) -> int | None:
     """How a version compares with numbers asked for: -1, 0, 1, or None where it is not known finely enough."""
     known = numbers_of(version) if version else ()
@@ -102,4 +87,6 @@ def against(version: str | None, wanted: tuple[int, ...]) -> int | None:
         return None
     if len(known) < len(wanted) and known == wanted[: len(known)] and any(wanted[len(known) :]):
         return None
-    return _compare(known, wanted)
+    size = max(len(known), len(wanted))
+    left, right = (each + (0,) * (size - len(each)) for each in (known, wanted))
+    return (left > right) - (left < right)

@@ -68,23 +68,31 @@ _AT_LEAST = re.compile(r"(\w+?)_(?:VERSION_(?:GTE|GE|AT_LEAST|MINIMUM)|MIN_VERSI
 _LESS_THAN = re.compile(r"(\w+?)_VERSION_(?:LT|LESS)")
 
 
-class _Cpp:
-    """A recursive descent parser over the tokens of one #if."""
+@lru_cache(4096)
+def _tokens(text: str) -> tuple[tuple[str, str], ...]:
+    """(kind, text) of every token, an end behind them; none of a text that is no expression."""
+    tokens: list[tuple[str, str]] = []
+    position, text = 0, text.strip()
+    while position < len(text):
+        match = _CPP_TOKEN.match(text, position)
+        if match is None:
+            return ()
+        kind = match.lastgroup or ""
+        value = match.group(kind)
+        if kind == "name" and value in _WORD_OPERATORS:
+            kind, value = "operator", _WORD_OPERATORS[value]
+        tokens.append((kind, value))
+        position = match.end()
+    return (*tokens, ("end", ""))
 
-    def __init__(self, text: str) -> None:
-        self.tokens: list[tuple[str, str]] = []
-        position, text = 0, text.strip()
-        while position < len(text):
-            match = _CPP_TOKEN.match(text, position)
-            if match is None:
-                raise ValueError("no preprocessor expression")
-            kind = match.lastgroup or ""
-            value = match.group(kind)
-            if kind == "name" and value in _WORD_OPERATORS:
-                kind, value = "operator", _WORD_OPERATORS[value]
-            self.tokens.append((kind, value))
-            position = match.end()
-        self.tokens.append(("end", ""))
+
+class _Cpp:
+    """A recursive descent over the tokens of one #if to its value on a machine: a number, or None where it cannot be
+    told. Raises ValueError or LookupError where the tokens are no expression."""
+
+    def __init__(self, text: str, environment: Environment) -> None:
+        self.tokens = _tokens(text)
+        self.environment = environment
         self.at = 0
 
     def take(self) -> tuple[str, str]:
@@ -102,21 +110,22 @@ class _Cpp:
         if not self.takes(value):
             raise ValueError(f"`{value}` expected")
 
-    def whole(self):
-        node = self.ternary()
+    def whole(self) -> int | None:
+        value = self.ternary()
         if self.tokens[self.at][0] != "end":
             raise ValueError("more than an expression")
-        return node
+        return value
 
-    def ternary(self):
-        test = self.binary(1)
+    def ternary(self) -> int | None:
+        value = self.binary(1)
         if not self.takes("?"):
-            return test
-        yes = self.ternary()
+            return value
+        test, yes = _truth(value), self.ternary()
         self.expect(":")
-        return ("?", test, yes, self.ternary())
+        no = self.ternary()
+        return (yes if yes == no else None) if test is None else yes if test else no
 
-    def binary(self, least: int):
+    def binary(self, least: int) -> int | None:
         left = self.unary()
         while True:
             kind, value = self.tokens[self.at]
@@ -124,24 +133,27 @@ class _Cpp:
             if strength < least:
                 return left
             self.at += 1
-            left = (value, left, self.binary(strength + 1))
+            left = _combined(value, left, self.binary(strength + 1))
 
-    def unary(self):
+    def unary(self) -> int | None:
         kind, value = self.take()
         if kind == "operator" and value in ("!", "-", "+", "~"):
-            return ("unary", value, self.unary())
+            operand = self.unary()
+            if value == "!":
+                return negation(_truth(operand))
+            return None if operand is None else -operand if value == "-" else ~operand if value == "~" else operand
         if kind == "operator" and value == "(":
-            node = self.ternary()
+            inside = self.ternary()
             self.expect(")")
-            return node
+            return inside
         if kind == "number":
             digits = value.replace("'", "")
             octal = len(digits) > 1 and digits.isdigit() and digits[0] == "0"
             if len(digits) > 20:
                 raise ValueError("number too long")
-            return ("number", int(digits, 8 if octal else 0))
+            return int(digits, 8 if octal else 0)
         if kind == "include":
-            return ("include", re.sub(r"^[^<\"]*[<\"]|[>\"]\s*\)$", "", value))
+            return self.environment.headers(re.sub(r"^[^<\"]*[<\"]|[>\"]\s*\)$", "", value))
         if kind != "name":
             raise ValueError("operand expected")
         if value == "defined":
@@ -151,44 +163,38 @@ class _Cpp:
                 raise ValueError("name expected")
             if opened:
                 self.expect(")")
-            return ("defined", value)
+            return _defined(value, self.environment)
         if self.takes("("):
-            return ("call", value, self.arguments())
-        return ("name", value)
+            return _macro_call(value, self.arguments(), self.environment)
+        return _macro(value, self.environment)
 
-    def arguments(self) -> tuple:
+    def arguments(self) -> list[int | str | None]:
         """Arguments of a macro: expressions, or one operator as PCL_VERSION_COMPARE takes it."""
-        arguments: list = []
+        arguments: list[int | str | None] = []
         while not self.takes(")"):
             if self.tokens[self.at][1] in COMPARISONS and self.tokens[self.at + 1] == ("operator", ","):
-                arguments.append(("operator", self.take()[1]))
+                arguments.append(self.take()[1])
             else:
                 arguments.append(self.ternary())
             if not self.takes(",") and self.tokens[self.at] != ("operator", ")"):
                 raise ValueError("`,` expected")
-        return tuple(arguments)
+        return arguments
 
 
-@lru_cache(4096)
-def _cpp_parsed(text: str):
+def _value(text: str, environment: Environment) -> int | None:
     try:
-        return _Cpp(text).whole()
+        return _Cpp(text, environment).whole()
     except (ValueError, LookupError, RecursionError):
         return None
 
 
 def evaluate(text: str, environment: Environment) -> bool | None:
-    node = _cpp_parsed(text)
-    if node is None:
-        return None
-    value = _cpp_value(node, environment)
-    return None if value is None else value != 0
+    return _truth(_value(text, environment))
 
 
 def number_of(text: str) -> int | None:
     """The value of an expression of numbers alone; None for what is none, or compares them."""
-    node = _cpp_parsed(text)
-    value = None if node is None else _cpp_value(node, Environment())
+    value = _value(text, Environment())
     return None if isinstance(value, bool) else value
 
 
@@ -196,37 +202,15 @@ def _truth(value: int | None) -> bool | None:
     return None if value is None else value != 0
 
 
-def _cpp_value(node, environment: Environment) -> int | None:
-    kind = node[0]
-    if kind == "number":
-        return node[1]
-    if kind == "name":
-        return _macro(node[1], environment)
-    if kind == "defined":
-        return _defined(node[1], environment)
-    if kind == "include":
-        return environment.headers(node[1])
-    if kind == "call":
-        return _macro_call(node[1], node[2], environment)
-    if kind == "?":
-        test = _truth(_cpp_value(node[1], environment))
-        yes, no = _cpp_value(node[2], environment), _cpp_value(node[3], environment)
-        return (yes if yes == no else None) if test is None else yes if test else no
-    if kind == "unary":
-        value = _cpp_value(node[2], environment)
-        if node[1] == "!":
-            return negation(_truth(value))
-        return None if value is None else -value if node[1] == "-" else ~value if node[1] == "~" else value
-    left, right = _cpp_value(node[1], environment), _cpp_value(node[2], environment)
+def _combined(kind: str, left: int | None, right: int | None) -> int | None:
+    """The value of a binary operator."""
     if kind == "&&":
         return both(_truth(left), _truth(right))
     if kind == "||":
         return either(_truth(left), _truth(right))
     if left is None or right is None:
         return None
-    if kind in COMPARISONS:
-        return COMPARISONS[kind](left, right)
-    return _arithmetic(kind, left, right)
+    return COMPARISONS[kind](left, right) if kind in COMPARISONS else _arithmetic(kind, left, right)
 
 
 def _arithmetic(kind: str, left: int, right: int) -> int | None:
@@ -283,16 +267,15 @@ def _macro(name: str, environment: Environment) -> int | None:
     return known[index] if index < len(known) else None
 
 
-def _macro_call(name: str, arguments: tuple, environment: Environment) -> int | None:
-    numbers = [_cpp_value(argument, environment) for argument in arguments if argument[0] != "operator"]
-    if not numbers or None in numbers:
+def _macro_call(name: str, arguments: list[int | str | None], environment: Environment) -> int | None:
+    wanted = tuple(argument for argument in arguments if isinstance(argument, int))
+    if not wanted or None in arguments:
         return None
-    wanted = tuple(number for number in numbers if number is not None)
     if name in _MAKERS:
         return sum(weight * part for weight, part in zip(_MAKERS[name], (*wanted, 0, 0), strict=False))
-    if name == "PCL_VERSION_COMPARE" and arguments[0][0] == "operator":
+    if name == "PCL_VERSION_COMPARE" and isinstance(arguments[0], str):
         order = against(version_of("pcl", environment), wanted)
-        return None if order is None else COMPARISONS[arguments[0][1]](order, 0)
+        return None if order is None else COMPARISONS[arguments[0]](order, 0)
     for pattern, compare in ((_AT_LEAST, operator.ge), (_LESS_THAN, operator.lt)):
         match = pattern.fullmatch(name)
         if match:

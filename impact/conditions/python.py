@@ -141,9 +141,7 @@ def _python_call(node: ast.Call, environment: Environment) -> Any:
     if name in ("platform.python_version", "platform.python_version_tuple") and environment.python:
         text = "{}.{}.".format(*environment.python)
         return text if name.endswith("version") else tuple(map(str, environment.python))
-    if name in ("int", "float", "str", "bool", "tuple", "len") and len(arguments) == 1 and arguments[0] is not _UNKNOWN:
-        if name == "tuple" or name == "len":
-            return _UNKNOWN
+    if name in ("int", "float", "str", "bool") and len(arguments) == 1 and arguments[0] is not _UNKNOWN:
         return {"int": int, "float": float, "str": str, "bool": bool}[name](arguments[0])
     if isinstance(node.func, ast.Attribute) and node.func.attr in ("startswith", "lower") and len(arguments) < 2:
         value = _python_value(node.func.value, environment)

@@ -361,6 +361,7 @@ def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Itera
     if old.type and new.type and old.type != new.type:
         yield change("changed", old.type, new.type, f"type `{new.type}` was `{old.type}`")
     before, after = dict(old.offers), dict(new.offers)
+    of_ros1 = "reliability" not in before and "reliability" not in after
     clauses: list[str] = []
     for name in dict.fromkeys((*before, *after)):
         # What the system chooses is not told either.
@@ -368,15 +369,11 @@ def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Itera
             "" if setting == "system_default" else setting for setting in (before.get(name, ""), after.get(name, ""))
         )
         # A latch that is not set is no latch; any other setting that is not told is not known.
-        if was != is_now and ((was and is_now) or (name == "durability" and _of_ros1(old, new))):
+        if was != is_now and ((was and is_now) or (name == "durability" and of_ros1)):
             label = "queue" if name == "depth" else name
             clauses.append(f"{label} `{is_now or 'volatile'}` was `{was or 'volatile'}`")
     if clauses:
         yield change("trigger changed", _offer(old), _offer(new), "; ".join(clauses))
-
-
-def _of_ros1(*outlets: Outlet) -> bool:
-    return all("reliability" not in dict(outlet.offers) for outlet in outlets)
 
 
 def _offer(outlet: Outlet) -> str:

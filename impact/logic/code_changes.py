@@ -45,7 +45,8 @@ def changed_functions(
     was: dict[str, Counter[tuple[str, ...]]] = {}
     for name, _, tokens in _codes(before.functions if before is not None else (), old_lines, language):
         renamed = tuple(words.get(token, token) for token in tokens)
-        was.setdefault(_renamed(name, words), Counter())[renamed] += 1
+        now = re.sub(r"\w+", lambda match: words.get(match[0], match[0]), name)
+        was.setdefault(now, Counter())[renamed] += 1
     for name, function, tokens in _codes(after.functions, new_lines, language):
         same = was.get(name)
         if same is None or not same[tokens]:
@@ -72,10 +73,6 @@ def _codes(
         own = [text for number, text in enumerate(lines[function.line - 1 : function.end], function.line)
                if number not in hidden]  # fmt: skip
         yield bare(function.name), function, _tokens(own, language)
-
-
-def _renamed(name: str, words: Mapping[str, str]) -> str:
-    return re.sub(r"\w+", lambda match: words.get(match[0], match[0]), name)
 
 
 def _tokens(lines: list[str], language: Language) -> tuple[str, ...]:

@@ -165,7 +165,7 @@ class _Reader:
     def inner(self, node: Any) -> Any:
         """The node without parentheses around it."""
         while node.type == "parenthesized_expression":
-            inside = [child for child in node.named_children if child.type != "comment"]
+            inside = _parts(node)
             if len(inside) != 1:
                 return node
             node = inside[0]
@@ -284,7 +284,7 @@ class _Reader:
         called = node.child_by_field_name("function")
         if listed is None or called is None:
             return self.opaque(node)
-        arguments = [self.term(child, depth) for child in listed.named_children if child.type != "comment"]
+        arguments = [self.term(child, depth) for child in _parts(listed)]
         called = self.inner(called)
         if len(arguments) == 1:
             cast = self.cast_to(called)
@@ -336,8 +336,7 @@ class _Reader:
 
     def read_subscript_expression(self, node: Any, depth: int) -> Term:
         indices = node.child_by_field_name("indices")
-        inside = indices.named_children if indices is not None else []
-        parts = (self.term(child, depth) for child in inside if child.type != "comment")
+        parts = (self.term(child, depth) for child in (_parts(indices) if indices is not None else ()))
         return Term("index", "", (self.field(node, "argument", depth), *parts))
 
     def read_conditional_expression(self, node: Any, depth: int) -> Term:
@@ -386,7 +385,7 @@ class _Reader:
         if declarator is None or value is None:
             return self.opaque(node)
         if value.type in ("initializer_list", "argument_list"):
-            inside = [child for child in value.named_children if child.type != "comment"]
+            inside = _parts(value)
             if len(inside) != 1:
                 return self.opaque(node)
             value = inside[0]
@@ -397,15 +396,16 @@ class _Reader:
         return term
 
     def read_true(self, node: Any, depth: int) -> Term:
-        return {"true": TRUE, "false": FALSE, "null": NULL}[node.type]
+        return {"true": TRUE, "false": FALSE, "null": NULL, "this": Term("name", "this")}[node.type]
 
-    read_false = read_null = read_true
-
-    def read_this(self, node: Any, depth: int) -> Term:
-        return Term("name", "this")
+    read_false = read_null = read_this = read_true
 
     def read_sizeof_expression(self, node: Any, depth: int) -> Term:
         return Term("op", self.tokens(node))
+
+
+def _parts(node: Any) -> list[Any]:
+    return [child for child in node.named_children if child.type != "comment"]
 
 
 def _fractional(value: Term) -> bool:

@@ -28,7 +28,7 @@ from .guard_terms import (
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 _OPERATORS = {
     ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%", ast.Pow: "**", ast.LShift: "<<", ast.RShift: ">>", ast.BitOr: "|",
-    ast.BitAnd: "&", ast.BitXor: "^", ast.MatMult: "@",
+    ast.BitAnd: "&", ast.BitXor: "^", ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*",
 }  # fmt: skip
 _MOST_MEMBERS = 50
 
@@ -71,13 +71,18 @@ def parsed(text: str) -> ast.expr | None:
     return None
 
 
+def _statement(text: str) -> ast.stmt | None:
+    """The statement that a text begins with, None where it is none."""
+    try:
+        return ast.parse(text).body[0]
+    except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
+        return None
+
+
 def loop(head: str) -> GuardReading:
     """What the head of a `for` says: that there is an element."""
     inside = re.sub(r"^\s*(?:async\s+)?for\s+|:\s*$", "", head).strip()
-    try:
-        statement = ast.parse(f"for {inside}: pass").body[0]
-    except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
-        return GuardReading((Conjunct(head, opaque(head)),))
+    statement = _statement(f"for {inside}: pass")
     if not isinstance(statement, ast.For) or len(inside) > LONGEST:
         return GuardReading((Conjunct(head, opaque(head)),))
     element = Term("each", "", (_Reader().term(statement.iter, 0),))
@@ -95,10 +100,7 @@ def _unpacked(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
 
 def matched(subject: Term, pattern: str) -> GuardReading:
     """What `case pattern` says of a subject."""
-    try:
-        statement = ast.parse(f"match _:\n case {pattern}: pass").body[0]
-    except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
-        return GuardReading((Conjunct("", comparison("==", subject, opaque(pattern))),))
+    statement = _statement(f"match _:\n case {pattern}: pass")
     if not isinstance(statement, ast.Match) or len(statement.cases) != 1 or statement.cases[0].guard:
         return GuardReading((Conjunct("", comparison("==", subject, opaque(pattern))),))
     names: list[tuple[str, Term]] = []
@@ -195,12 +197,11 @@ class _Reader:
             left, right = terms[place], terms[place + 1]
             if isinstance(operator, (ast.In, ast.NotIn)):
                 link = self.within(left, node.comparators[place], right, depth)
-                links.append(negation(link) if isinstance(operator, ast.NotIn) else link)
             elif isinstance(operator, (ast.Is, ast.IsNot)):
                 link = _is(left, right)
-                links.append(negation(link) if isinstance(operator, ast.IsNot) else link)
             else:
-                links.append(comparison(_COMPARED[type(operator)], left, right))
+                link = comparison(_COMPARED[type(operator)], left, right)
+            links.append(negation(link) if isinstance(operator, (ast.NotIn, ast.IsNot)) else link)
         return join("and", links)
 
     def within(self, left: Term, written: ast.expr, right: Term, depth: int) -> Term:
@@ -213,11 +214,8 @@ class _Reader:
         return join("or", [comparison("==", left, self.term(part, depth)) for part in listed])
 
     def read_BinOp(self, node: ast.BinOp, depth: int) -> Term:
-        left, right = self.term(node.left, depth), self.term(node.right, depth)
-        for kind, sign in ((ast.Add, "+"), (ast.Sub, "-"), (ast.Mult, "*")):
-            if isinstance(node.op, kind):
-                return Term(sign, "", (left, right))
-        return Term("op", _OPERATORS[type(node.op)], (left, right))
+        operands, sign = (self.term(node.left, depth), self.term(node.right, depth)), _OPERATORS[type(node.op)]
+        return Term(sign, "", operands) if sign in ("+", "-", "*") else Term("op", sign, operands)
 
     def read_IfExp(self, node: ast.IfExp, depth: int) -> Term:
         return Term("choice", "", tuple(self.term(part, depth) for part in (node.test, node.body, node.orelse)))

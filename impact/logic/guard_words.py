@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
 from .guard_terms import Conjunct, Term, names_in
@@ -72,9 +72,7 @@ def _those(way: Sequence[Conjunct], terms: frozenset[Term]) -> list[Conjunct]:
 
 
 def _either(ways: Sequence[Sequence[Conjunct]]) -> str:
-    listed = list(dict.fromkeys(_listed(way) for way in ways))
-    if len(listed) > _MOST:
-        listed = [*listed[: _MOST - 1], f"{len(listed) - _MOST + 1} more"]
+    listed = _few(_listed(way) for way in ways)
     return ", or ".join(listed) if any(len(way) > 1 for way in ways) else " or ".join(listed)
 
 
@@ -148,10 +146,14 @@ def _is_block(piece: Conjunct) -> bool:
 
 
 def _listed(pieces: Sequence[Conjunct]) -> str:
-    quoted = list(dict.fromkeys(_shown(piece.text) for piece in pieces))
-    if len(quoted) > _MOST:
-        quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
+    quoted = _few(_shown(piece.text) for piece in pieces)
     return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])
+
+
+def _few(texts: Iterable[str]) -> list[str]:
+    """Each once; of many the first, and how many more there are."""
+    every = list(dict.fromkeys(texts))
+    return every if len(every) <= _MOST else [*every[: _MOST - 1], f"{len(every) - _MOST + 1} more"]
 
 
 def _shown(text: str) -> str:

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
@@ -59,6 +59,14 @@ class PackageState(NamedTuple):
     def whole(self, path: str) -> str:
         """A path of the package as a path of the repository."""
         return f"{self.path}/{path}" if self.path else path
+
+
+def key_of(name: str, ros: int, files: Iterable[PackageFile]) -> bytes:
+    """The key of a PackageState."""
+    stamp = hashlib.sha1(f"{name} {ros}\n".encode())
+    for file in files:
+        stamp.update(f"{file.path} {file.id} {file.kind}\n".encode("utf-8", "surrogateescape"))
+    return stamp.digest()
 
 
 class _Found(NamedTuple):
@@ -189,10 +197,7 @@ class CommitHistory:
     def _content(self, folder: Any, rosbuild: bool, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
         files = self._listed(folder, rosbuild, top=True)
         files = tuple(file for file in files if role_of_folder(file.path) != "test")
-        stamp = hashlib.sha1(f"{name} {ros}\n".encode())
-        for file in files:
-            stamp.update(f"{file.path} {file.id} {file.kind}\n".encode("utf-8", "surrogateescape"))
-        return files, stamp.digest()
+        return files, key_of(name, ros, files)
 
     def _found(self, folder, level: int = 0) -> tuple[_Found, ...]:
         """The packages at and below a folder, in the order of their paths. Raises KeyError where there are too many."""

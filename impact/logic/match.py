@@ -71,7 +71,9 @@ def matched(
     for key in (_exact, _near):
         found, old, new = _equal(old, new, key, names)
         pairs += found
-    found, gone, come = _closest(old, new, lambda one, other: _alike(one, other, names), _lines)
+    found, gone, come = _closest(
+        old, new, lambda one, other: _alike(one, other, names), lambda one, other: abs(one.said.line - other.said.line)
+    )
     return pairs + found, gone, come
 
 
@@ -148,10 +150,6 @@ def _exact(at: StatementPlace, names: Renames) -> tuple:
 
 def _near(at: StatementPlace, names: Renames) -> tuple:
     return (*_place(at, names), at.topics, names.text(at.said.expression))
-
-
-def _lines(one: StatementPlace, other: StatementPlace) -> int:
-    return abs(one.said.line - other.said.line)
 
 
 def _alike(one: StatementPlace, other: StatementPlace, names: Renames) -> int:

@@ -21,7 +21,7 @@ from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .changes import LogicChange, ReachedSubscriber, Side
 from .history import Commit, CommitHistory, PackageState
 from .statements import Before, kind_of_facts
-from .states import compared, decoded, digest_key, packed_digest, safe_digest, stamp, unread_digest
+from .states import Digests, compared, decoded, digest_row, stamp, unread_digest
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
@@ -78,7 +78,7 @@ def read(
     """
     history = CommitHistory(repository)
     commits = history.commits(range.text, range.number, range.since)
-    run = _Run(history, store, jobs or processes.cores(), progress or _silent)
+    run = _Run(history, store, jobs or processes.cores(), progress or (lambda what, done, total: None))
     results = run.results(commits)
     found = [(commit, change) for commit in commits for change in results[commit.id].changes]
     coverage = run.coverage(commits, results)
@@ -99,10 +99,6 @@ def chosen(logic: Logic, packages: Sequence[str] = (), topics: Sequence[str] = (
     return msgspec.structs.replace(logic, changes=found)
 
 
-def _silent(what: str, done: int, total: int) -> None:
-    pass
-
-
 def _range_text(range: Range) -> str:
     parts = [range.text or "HEAD"]
     if range.number is not None:
@@ -115,7 +111,7 @@ def _range_text(range: Range) -> str:
 class _Run:
     def __init__(self, history: CommitHistory, store: Store, jobs: int, progress: Progress):
         self.history, self.store, self.jobs, self.progress = history, store, jobs, progress
-        self.digests = _Digests(store)
+        self.digests = Digests(store)
 
     def results(self, commits: Sequence[Commit]) -> dict[str, _Result]:
         keys = {_commit_key(commit.id, self.history.folder): commit.id for commit in commits}
@@ -159,9 +155,8 @@ class _Run:
         done = 0
         what = (self.history.path, self.store.folder)
         for chunk, made in processes.forked_rows(_digest_chunk, chunks, self.jobs, *what):
-            self.digests.add([row for row in made if row is not None])
             lost = [state for state, row in zip(chunk, made, strict=True) if row is None]
-            self.digests.packed.update(unread_digest(state) for state in lost)
+            self.digests.add([row for row in made if row is not None], map(unread_digest, lost))
             done += len(chunk)
             self.progress("reading packages", done, len(missing))
 
@@ -204,7 +199,7 @@ class _Run:
         statements = unresolved = 0
         unread: list[str] = []
         for state in states.values():
-            one = decoded(self.digests.packed.get(state.key))
+            one = self.digests.of(state.key)
             statements += len(one.statements)
             unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
             unread += [state.whole(path) for path in one.unread]
@@ -216,11 +211,15 @@ class _Run:
         """The subscribers of a commit by their topics."""
         found: dict[str, list[ReachedSubscriber]] = {}
         for state in self.history.packages(commit).values():
-            for inlet in self.digests.inlets(state.key):
+            for inlet in self._inlets(state.key):
                 path = state.whole(inlet.path)
                 reached = ReachedSubscriber(state.name, inlet.node, inlet.topic, inlet.callback, path, inlet.line)
                 found.setdefault(inlet.topic, []).append(reached)
         return found
+
+    @cached_method
+    def _inlets(self, key: bytes):
+        return self.digests.of(key).inlets
 
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
         folder = self.history.folder
@@ -287,29 +286,6 @@ def _renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
     return history.renames(step.commit.parent, step.commit.id)
 
 
-class _Digests:
-    """Digests by the keys of the states they are of, packed until they are asked for."""
-
-    def __init__(self, store: Store):
-        self.store = store
-        self.packed: dict[bytes, bytes] = {}
-
-    def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
-        """All that are known, those of these keys that the store has among them."""
-        wanted = {digest_key(key): key for key in keys if key not in self.packed}
-        for row, data in self.store.memos("digest", wanted).items():
-            self.packed[wanted[row]] = pack(data)
-        return self.packed
-
-    def add(self, rows: Sequence[tuple[bytes, bytes]]) -> None:
-        self.packed.update(rows)
-        self.store.remember("digest", [(digest_key(key), unpack(data)) for key, data in rows])
-
-    @cached_method
-    def inlets(self, key: bytes):
-        return decoded(self.packed.get(key)).inlets
-
-
 def _chunked(states: Iterable[PackageState]) -> list[list[PackageState]]:
     """States in pieces of one package each, in the order of time; the largest first."""
     by_name: dict[str, list[PackageState]] = {}
@@ -340,7 +316,7 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[PackageState]) 
             known.update(_facts(history, store, [key for key in wanted if key not in known]))
             facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
             processes.begin_part(0, _JOIN_BYTES)
-            rows.append((state.key, packed_digest(safe_digest(state, facts, before))))
+            rows.append(digest_row(state, facts, before))
     return rows
 
 

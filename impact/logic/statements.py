@@ -222,7 +222,7 @@ class _Digester:
     def _full(self, site: Site) -> Iterator[str]:
         for value in site.names:
             for owner in self._owners(site.use.fn):
-                node = owner if isinstance(owner, Node) else owner.node if owner is not None else None
+                node = _node_of(owner)
                 own = _near(site, value).startswith("~") or "{" in (value.text or "")
                 if value.text is None or (own and (node is None or node.kind == "library")):
                     continue  # the name of a node that is not known is not guessed
@@ -237,7 +237,7 @@ class _Digester:
         line = callback.facts.line if callback is not None else use.call.line
         for value in site.names:
             for owner in self._owners(use.fn):
-                node = owner if isinstance(owner, Node) else owner.node if owner is not None else None
+                node = _node_of(owner)
                 for topic in self._full(site._replace(names=(value,))):
                     yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
 
@@ -249,8 +249,7 @@ class _Digester:
         found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
         found = found or [Way(Trigger("unknown", "", "", 0))]
         ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
-        owners = [owner for owner in self._owners(fn) if owner is not None]
-        nodes = tuple(sorted({owner.id if isinstance(owner, Node) else owner.node.id for owner in owners}))
+        nodes = tuple(sorted({node.id for node in map(_node_of, self._owners(fn)) if node is not None}))
         return Said(
             fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
@@ -335,6 +334,10 @@ class _Digester:
                 kind = tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
+
+
+def _node_of(owner: Owner) -> Node | None:
+    return owner if owner is None or isinstance(owner, Node) else owner.node
 
 
 def _near(site: Site, value: FlowValue) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -12,7 +12,7 @@ import msgspec
 from ...edges.console import visible
 from ...edges.limits import limits_stamp
 from ..facts.kinds import version_of_all
-from ..facts.store import pack, unpack
+from ..facts.store import Store, pack, unpack
 from ..model.flow import join
 from ..source_keys import source_key
 from .changes import LogicChange, Side, changes, settled
@@ -71,17 +71,18 @@ def renamed_words(
     return found
 
 
-def safe_digest(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> PackageStatements:
-    """The digest of a state, an empty one of code that is nested beyond all reason: it must not end the run."""
+def digest_row(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> tuple[bytes, bytes]:
+    """The key of a state and its digest, packed; an empty one of code that is nested beyond all reason: it must not end
+    the run."""
     try:
-        return digest(state, facts, before)
+        return state.key, _packed(digest(state, facts, before))
     except RecursionError:
         if before is not None:
             before.code = None
-        return EMPTY
+        return state.key, _packed(EMPTY)
 
 
-def packed_digest(digest: PackageStatements) -> bytes:
+def _packed(digest: PackageStatements) -> bytes:
     """A digest as it is kept. Names of bytes that are no UTF-8, which msgpack cannot carry, are kept as they are
     shown."""
     try:
@@ -93,7 +94,7 @@ def packed_digest(digest: PackageStatements) -> bytes:
 def unread_digest(state: PackageState) -> tuple[bytes, bytes]:
     """What stands for the digest of a state that could not be made: all its files count as not read."""
     files = tuple(file.path for file in state.files)
-    return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
+    return state.key, _packed(msgspec.structs.replace(EMPTY, unread=files))
 
 
 def _visible_all(value: Any) -> Any:
@@ -116,9 +117,30 @@ def decoded(data: bytes | None) -> PackageStatements:
         return EMPTY
 
 
-def digest_key(key: bytes) -> bytes:
-    """Under which the digest of a state with this key is remembered."""
-    return key + stamp(__name__)
+class Digests:
+    """Digests by the keys of the states they are of, packed until they are asked for."""
+
+    def __init__(self, store: Store):
+        self._store = store
+        self.packed: dict[bytes, bytes] = {}
+
+    def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
+        """All that are known, those of these keys that the store has among them."""
+        wanted = {key + stamp(__name__): key for key in keys if key not in self.packed}
+        for row, data in self._store.memos("digest", wanted).items():
+            self.packed[wanted[row]] = pack(data)
+        return self.packed
+
+    def add(self, rows: Iterable[tuple[bytes, bytes]], lost: Iterable[tuple[bytes, bytes]] = ()) -> None:
+        """Takes in keys and packed digests, and those that could not be made, which are not remembered."""
+        made = dict(rows)
+        self.packed.update(made)
+        self.packed.update(lost)
+        self._store.remember("digest", [(key + stamp(__name__), unpack(data)) for key, data in made.items()])
+
+    def of(self, key: bytes) -> PackageStatements:
+        """The digest of the state with this key."""
+        return decoded(self.packed.get(key))
 
 
 @cache

@@ -5,21 +5,20 @@ It is the comparison that `logic` makes of a commit and its parent, on workspace
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from typing import NamedTuple
 
 from ...edges import processes
 from ..facts.extract import ExtractedFacts, gather
 from ..facts.kinds import FLOW
-from ..facts.store import Store, pack, unpack
 from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
 from .changes import LogicChange, Side
-from .history import PackageFile, PackageState
+from .history import PackageFile, PackageState, key_of
 from .statements import PackageStatements, kind_of_facts
-from .states import compared, decoded, digest_key, packed_digest, safe_digest, unread_digest
+from .states import Digests, compared, digest_row, unread_digest
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
 """What a file is called here, by its kind of facts, whether it was gathered for message flow or for other ends."""
@@ -67,27 +66,24 @@ def publishing(workspace: Workspace, base: Workspace) -> tuple[LogicChange, ...]
         return ()
     old = Side([*zip(found.old, _digests(base, found.old), strict=True)])
     new = Side([*zip(found.new, _digests(workspace, found.new), strict=True)])
-    read = _Reading(workspace, base, found)
+    places = {
+        file.id: (each, state.whole(file.path))
+        for each, states in ((base, found.old), (workspace, found.new))
+        for state in states
+        for file in state.files
+    }
+
+    def read(file: PackageFile) -> bytes:
+        return bytes_of(*places[file.id])
+
     return tuple(c for c in compared(old, new, lambda: found.renamed, read) if c.kind != "equivalent")
 
 
-class _Reading:
-    """Bytes of files of either side."""
-
-    def __init__(self, workspace: Workspace, base: Workspace, found: Differing):
-        self.places = {
-            file.id: (each, state.whole(file.path))
-            for each, states in ((base, found.old), (workspace, found.new))
-            for state in states
-            for file in state.files
-        }
-
-    def __call__(self, file: PackageFile) -> bytes:
-        workspace, path = self.places[file.id]
-        try:
-            return workspace.read(path)
-        except OSError:
-            return b""
+def bytes_of(workspace: Workspace, path: str) -> bytes:
+    """The bytes of a file, none where it cannot be read."""
+    with suppress(OSError):
+        return workspace.read(path)
+    return b""
 
 
 def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
@@ -106,7 +102,6 @@ def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str
 def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> PackageState:
     """A package as `logic` knows it: its key is the same there for the same content."""
     ros = 2 if package.build_type.startswith("ament") else 1
-    stamp = hashlib.sha1(f"{package.name} {ros}\n".encode())
     files: list[PackageFile] = []
     for path, content, kind in listed:
         if kind == "script":
@@ -114,8 +109,7 @@ def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, s
                 continue
             kind = "python"
         files.append(PackageFile(path, content, kind))
-        stamp.update(f"{path} {content} {kind}\n".encode("utf-8", "surrogateescape"))
-    return PackageState(package.name, package.path, ros, tuple(files), stamp.digest())
+    return PackageState(package.name, package.path, ros, tuple(files), key_of(package.name, ros, files))
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:
@@ -155,17 +149,14 @@ def _by(
 
 def _digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
     """The digests of some packages, in their order; those that are not known are made and kept."""
-    store: Store = workspace.gathered.store
-    rows = {digest_key(state.key): state for state in states}
-    packed = {rows[row].key: pack(data) for row, data in store.memos("digest", rows).items()}
-    missing = [state for state in rows.values() if state.key not in packed]
+    digests = Digests(workspace.gathered.store)
+    known = digests.load(state.key for state in states)
+    missing = [state for state in states if state.key not in known]
     if missing:
-        gathered = flow_facts(workspace, missing)
-        made = dict(_made(workspace, gathered, missing))
-        lost = {unread_digest(state) for state in missing}
-        store.remember("digest", [(digest_key(row[0]), unpack(row[1])) for row in made.items() if row not in lost])
-        packed.update(made)
-    return [decoded(packed.get(state.key)) for state in states]
+        made = list(_made(workspace, flow_facts(workspace, missing), missing))
+        lost = set(map(unread_digest, missing))
+        digests.add([row for row in made if row not in lost], lost.intersection(made))
+    return [digests.of(state.key) for state in states]
 
 
 def flow_facts(workspace: Workspace, states: Sequence[PackageState]) -> ExtractedFacts:
@@ -204,4 +195,4 @@ def _one(workspace: Workspace, gathered: ExtractedFacts, state: PackageState) ->
         source = gathered if kind_of_facts(file) in _CODE else workspace.gathered
         facts[file.path] = source.facts(path).facts if path in source.kinds else None
     gathered.forget(whole.values())
-    return state.key, packed_digest(safe_digest(state, facts))
+    return digest_row(state, facts)

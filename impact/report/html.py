@@ -43,7 +43,7 @@ def _data(report: Report) -> dict[str, Any]:
             ]
             for package, row in matrix(report).items()
         ],
-        "rules": {rule.name: rule.summary for rule in report.rules if rule.documentation},
+        "rules": {rule.name: rule.summary for rule in report.rules() if rule.documentation},
         "impact": _impact(report),
         "findings": [as_row(report, finding, names) for finding in report.findings],
     }
@@ -78,12 +78,9 @@ def as_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
             before, under = (visible_in_page(shown.text[part]) for part in (slice(start), slice(start, start + width)))
             code = [first, [line[:_LONGEST_LINE] for line in lines], len(before), len(under)]
     numbers = [names.index(name) for name in finding.targets if name in names]
+    source = finding.evidence.source if finding.evidence is not None else ""
     return [
         finding.rule, finding.severity, finding.package, finding.path, finding.line, finding.column, finding.subject,
         numbers, finding.message, finding.help, finding.new, code,
-        [*evidence.lines(finding), *_source(finding)],
+        [*evidence.lines(finding), *([("source", source)] if source else [])],
     ]  # fmt: skip
-
-
-def _source(finding: Finding) -> list[tuple[str, str]]:
-    return [("source", finding.evidence.source)] if finding.evidence is not None and finding.evidence.source else []

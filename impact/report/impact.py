@@ -3,12 +3,12 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 
 from ...edges.console import counted, json_text
-from ..analysis.downstream import KINDS, Effect, Hop, Impact
+from ..analysis.downstream import KINDS, Effect, Hop, Impact, ImpactResult
 from .columns import LinePart, laid_out
 from .graph.text import WIDE, coverage_lines
 from .markdown_text import code, escaped
@@ -25,15 +25,6 @@ _HEADS = {
     "message": "messages", "topic": "topics", "condition": "publish conditions", "trigger": "triggers",
     "callback": "callbacks",
 }  # fmt: skip
-
-
-class ImpactHeading(NamedTuple):
-    """What is compared: how the workspace, its revision and the base are called, and the tool's version."""
-
-    version: str
-    root: str = ""
-    rev: str = ""
-    base: str = ""
 
 
 def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
@@ -63,8 +54,7 @@ def summary(impact: Impact) -> str:
         return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
     told = ", ".join(counted(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
-    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
-    return f"{told} changed; {counted(len(reached), 'node')} of {impact.of:,} reached{silent}"
+    return f"{told} changed; {counted(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
 
 
 def names_of(impact: Impact) -> dict[str, str]:
@@ -171,8 +161,7 @@ def compact(impact: Impact) -> dict[str, Any]:
         row["reaches"] = [hop.node for hop in effect.reaches[:_MOST_NODES]]
         row["reached"] = len(effect.reaches)
         rows.append(row)
-    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
-    return {"changes": rows, "reached": len(reached), "nodes": impact.of, "silent": impact.silent}
+    return {"changes": rows, "reached": len(impact.reached), "nodes": impact.of, "silent": impact.silent}
 
 
 def _nowhere(effect: Effect) -> str:
@@ -194,14 +183,15 @@ def markdown(impact: Impact) -> str:
     return "\n".join([*rows, "", f"<sub>{escaped(summary(impact))}</sub>"]) + "\n"
 
 
-def as_json(impact: Impact, told: ImpactHeading) -> str:
-    """All of it as JSON; docs/impact.schema.json describes it."""
+def as_json(impact: Impact, found: ImpactResult, version: str) -> str:
+    """All of it, or of the part that was chosen, as JSON; docs/impact.schema.json describes it. found: what is
+    compared."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
-        "tool": {"name": "rosimpact", "version": told.version},
-        "workspace": told.root,
-        "rev": told.rev,
-        "base": told.base,
+        "tool": {"name": "rosimpact", "version": version},
+        "workspace": found.root,
+        "rev": found.rev,
+        "base": found.base,
         "changes": msgspec.to_builtins(impact.effects),
         "nodes": msgspec.to_builtins(impact.nodes),
         "silent": impact.silent,

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
 from ..analysis.report import Report
+from ..analysis.target_compare import UpgradeItem
+from ..rules.rule import Finding
 from . import json
 from .style import Style, painted
-from .text import finding_lines
-
-if TYPE_CHECKING:
-    from ..analysis.target_compare import UpgradeItem
-    from ..rules.rule import Finding
+from .text import finding_lines, place_of
 
 _PLACES = 5
 
@@ -56,16 +54,9 @@ def _fixed(findings: Sequence[Finding], fixable: Collection[str], style: Style) 
 
 def _places(findings: Sequence[Finding], style: Style, margin: str) -> Iterator[str]:
     for finding in findings[:_PLACES]:
-        yield f"{margin}{painted(style, 'dim', style.symbols[3])} {_place(finding)}"
+        yield f"{margin}{painted(style, 'dim', style.symbols[3])} {place_of(finding)}"
     if len(findings) > _PLACES:
         yield f"{margin}and {counted(len(findings) - _PLACES, 'more place')}"
-
-
-def _place(finding: Finding) -> str:
-    place = visible(finding.path)
-    if finding.line:
-        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
-    return place
 
 
 def as_data(item: UpgradeItem) -> dict[str, Any]:
@@ -76,11 +67,3 @@ def as_data(item: UpgradeItem) -> dict[str, Any]:
         "subject": item.subject,
         "findings": [json.as_data(finding) for finding in item.findings],
     }
-
-
-def by_severity(items: Iterable[UpgradeItem]) -> dict[str, int]:
-    """How many errors, warnings and notes, in this order, zeros included."""
-    counts = {"error": 0, "warning": 0, "note": 0}
-    for item in items:
-        counts[item.severity] += 1
-    return counts

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import json_text
-from ..analysis.report import Coverage, Report
+from ..analysis.report import Coverage, Report, ReportedTarget
 from ..rules.rule import Finding
 from . import evidence
 
@@ -18,18 +18,11 @@ def render(report: Report) -> str:
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": report.version, "data": report.data},
         "targets": [
-            {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
-            | ({"reason": target.reason} if target.reason else {})
-            | ({"notes": list(target.notes)} if target.notes else {})
+            target_as_data(target) | ({"reason": target.reason} if target.reason else {}) | notes_of(target)
             for target in report.targets
         ],
         "findings": [as_data(finding) for finding in report.findings],
-        "coverage": {
-            "packages": report.coverage.packages,
-            "files": report.coverage.files,
-            "parsed": report.coverage.parsed,
-            "unresolved": dict(sorted(report.coverage.unresolved.items())),
-        },
+        "coverage": coverage_as_data(report.coverage),
     }
     for key, value in (
         ("suppressed", len(report.suppressed)),
@@ -44,6 +37,21 @@ def render(report: Report) -> str:
 
         data["impact"] = compact(report.impact)
     return dumped(data)
+
+
+def target_as_data(target: ReportedTarget) -> dict[str, Any]:
+    """What every report tells of a target."""
+    return {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
+
+
+def notes_of(target: ReportedTarget) -> dict[str, Any]:
+    """What was adjusted of a target, where anything was."""
+    return {"notes": list(target.notes)} if target.notes else {}
+
+
+def coverage_as_data(coverage: Coverage) -> dict[str, Any]:
+    """What was analysed, as the schemas have it."""
+    return coverage._asdict() | {"unresolved": dict(sorted(coverage.unresolved.items()))}
 
 
 def dumped(data: dict[str, Any]) -> str:

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
-from ..analysis.report import ReportedTarget, cells
+from ..analysis.machine_compare import DependencyUse, Machines
+from ..analysis.report import ReportedTarget, cells, severities_text
 from . import json
 from .columns import LinePart, laid_out
-from .items import as_data, by_severity, item_lines
+from .items import as_data, item_lines
 from .style import Style, painted
 from .text import described
 
-if TYPE_CHECKING:
-    from ..analysis.machine_compare import DependencyUse, Machines
-    from ..analysis.target_compare import UpgradeItem
-
-FORMATS = ("text", "json")
 SCHEMA = 1
 _TAKES = {
     "find_package": "finds", "component": "finds", "pkg-config": "finds", "include": "includes", "import": "imports",
@@ -96,7 +92,7 @@ def _summary(found: Machines, style: Style) -> str:
     parts = [
         f"{alone} only on {visible(target.name)}"
         for target in _targets(found)
-        if (alone := _counts([item for item in found.harms if target.name in item.findings[0].targets]))
+        if (alone := severities_text((h for h in found.harms if target.name in h.findings[0].targets), " and "))
     ]
     told = ", ".join(parts) or "nothing breaks on only one of them"
     both = f"{counted(found.both, 'finding')} on both" if found.both else ""
@@ -104,17 +100,13 @@ def _summary(found: Machines, style: Style) -> str:
     return f" {style.symbols[4]} ".join(part for part in (told, both, versions) if part)
 
 
-def _counts(items: Sequence[UpgradeItem]) -> str:
-    return " and ".join(counted(number, severity) for severity, number in by_severity(items).items() if number)
-
-
 def as_json(found: Machines, version: str) -> str:
     """What differs, for programs."""
     data: dict[str, Any] = {
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": version},
-        "first": _target(found.first),
-        "second": _target(found.second),
+        "first": json.target_as_data(found.first),
+        "second": json.target_as_data(found.second),
         "machine": [each._asdict() for each in found.machine],
         "versions": [
             used.difference._asdict()
@@ -133,10 +125,6 @@ def as_json(found: Machines, version: str) -> str:
             {"target": item.findings[0].targets[0], "package": item.package} | as_data(item) for item in found.harms
         ]
     return json.dumped(data)
-
-
-def _target(target: ReportedTarget) -> dict[str, str]:
-    return {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
 
 
 def schema() -> str:

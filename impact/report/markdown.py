@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 
 from ...edges.console import counted
-from ..analysis.report import Report, count_by_severity, coverage_text, fresh
+from ..analysis.report import Report, count_by_severity, coverage_text, fresh, severities_text
 from ..rules.rule import Finding
 from .markdown_text import _LONGEST, code, escaped
 
@@ -29,9 +29,7 @@ def render(report: Report) -> str:
     left = groups[room - 1 :] if len(groups) > room else []
     rows = [_row(report, group) for group in groups[: len(groups) - len(left)]]
     if left:
-        rest = count_by_severity([finding for group in left for finding in group])
-        more = ", ".join(counted(number, severity) for severity, number in rest.items() if number)
-        rows.append(f"- and {more} more")
+        rows.append(f"- and {severities_text(finding for group in left for finding in group)} more")
     return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
 
 
@@ -45,11 +43,10 @@ def verdict(report: Report, written: Callable[[str], str] | None = None, strong:
         return f"failed: {written(report.failure)}"
     if not report.coverage.parsed:
         return "analysed nothing"
-    by_target = {target.name: {"error": 0, "warning": 0, "note": 0} for target in report.targets}
-    for finding in fresh(report):
-        for name in finding.targets or by_target:
-            if name in by_target:
-                by_target[name][finding.severity] += 1
+    by_target = {
+        target.name: count_by_severity(f for f in fresh(report) if not f.targets or target.name in f.targets)
+        for target in report.targets
+    }
     bad = [f"{strong}{written(name)}{strong}: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
     doubtful = [
         f"{written(name)}: {cell['warning']}"

@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Iterable
 from typing import Any
 from urllib.parse import quote
 
@@ -10,6 +9,7 @@ from ...edges.console import escape_json, visible, visible_bytes_in_json
 from ..analysis.report import Report, focus
 from ..rules.rule import Edit, Finding, Rule
 from . import evidence
+from .json import target_as_data
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _ROOT = "%SRCROOT%"
@@ -22,7 +22,8 @@ def render(report: Report) -> str:
         *((finding, [{"kind": "inSource"}]) for finding in report.suppressed),
         *((finding, [{"kind": "external", "justification": "in the baseline"}]) for finding in report.known),
     ]
-    rules = _rules(report.rules, [finding for finding, _ in results])
+    known = {rule.name: rule for rule in report.rules()}
+    rules = [_rule(name, known.get(name)) for name in sorted({finding.rule for finding, _ in results})]
     index = {rule["id"]: position for position, rule in enumerate(rules)}
     run = {
         "tool": {
@@ -38,10 +39,7 @@ def render(report: Report) -> str:
         "columnKind": "unicodeCodePoints",
         "results": [_result(report, finding, silent, index) for finding, silent in results],
         "properties": {
-            "targets": [
-                {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
-                for target in report.targets
-            ],
+            "targets": list(map(target_as_data, report.targets)),
             "data": report.data,
             "coverage": report.coverage._asdict() | {"unresolved": dict(report.coverage.unresolved)},
         }
@@ -63,13 +61,8 @@ def _invocation(report: Report) -> dict[str, Any]:
     return invocation | ({"toolExecutionNotifications": notices} if notices else {})
 
 
-def _rules(rules: Iterable[Rule], findings: list[Finding]) -> list[dict[str, Any]]:
-    """Descriptors of the rules that have results, with their documentation as help."""
-    known = {rule.name: rule for rule in rules}
-    return [_rule(name, known.get(name)) for name in sorted({finding.rule for finding in findings})]
-
-
 def _rule(name: str, rule: Rule | None) -> dict[str, Any]:
+    """The descriptor of a rule that has results, with its documentation as help."""
     if rule is None or not rule.documentation.strip():
         return {"id": name}
     head, _, body = rule.documentation.strip().partition("\n")

@@ -15,8 +15,6 @@ from .columns import LinePart, laid_out
 from .markdown_text import cell, code, escaped
 from .style import Style, painted
 
-FORMATS = ("text", "json", "markdown")
-
 
 class VersionSource(NamedTuple):
     """Where a version was read. asked: as the user wrote it. approximate: it is not there, and the revision stands for
@@ -205,23 +203,20 @@ class OfferedItem(NamedTuple):
 def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
     """All that a package offers, part by part. hashes: of its interfaces, by `msg/Name`, as far as they are known."""
     for name, definition in surface.interfaces:
+        full = f"{surface.package}/{name}"
         if name in hashes:
-            yield OfferedItem("Interfaces", "hash", f"{surface.package}/{name}", hashes[name])
+            yield OfferedItem("Interfaces", "hash", full, hashes[name])
         for section in definition.sections:
             part = "" if section.name == "message" else f"{section.name}."
             for field in section.fields:
                 default = f" {field.default}" if field.default else ""
                 written = f"{field.type}{field.array} {field.name}{default}"
-                yield OfferedItem("Interfaces", "field", f"{surface.package}/{name} {part}{field.name}", written)
+                yield OfferedItem("Interfaces", "field", f"{full} {part}{field.name}", written)
             for one in section.constants:
-                yield OfferedItem(
-                    "Interfaces",
-                    "constant",
-                    f"{surface.package}/{name} {part}{one.name}",
-                    f"{one.type} {one.name}={one.value}",
-                )
+                written = f"{one.type} {one.name}={one.value}"
+                yield OfferedItem("Interfaces", "constant", f"{full} {part}{one.name}", written)
         if name not in hashes and not any(one.fields or one.constants for one in definition.sections):
-            yield OfferedItem("Interfaces", "interface", f"{surface.package}/{name}")
+            yield OfferedItem("Interfaces", "interface", full)
     known = dict(surface.headers)
     for header in surface.build.headers:
         if header.include not in known:
@@ -236,9 +231,8 @@ def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
         yield OfferedItem("Python", "module", module.name, where=module.path)
     for name, entry in sorted(names.offered.items()):
         shown = signature(entry.bound.parameters) if entry.bound and entry.kind in ("function", "method") else ""
-        yield OfferedItem(
-            "Python", entry.kind, name, shown, deprecated=(entry.bound.deprecated or None) if entry.bound else None
-        )
+        deprecated = (entry.bound.deprecated or None) if entry.bound else None
+        yield OfferedItem("Python", entry.kind, name, shown, deprecated=deprecated)
         for member, inner in names.members(entry).items() if entry.kind == "class" and entry.where == name else ():
             shown = signature(inner.bound.parameters) if inner.bound and "method" in inner.kind else ""
             yield OfferedItem("Python", inner.kind, f"{name}.{member}", shown)
@@ -248,9 +242,7 @@ def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
     yield from (OfferedItem("CMake", "command", name) for name in build.commands)
     yield from (OfferedItem("CMake", "variable", name) for name in build.variables)
     yield from (OfferedItem("Programs", "executable", program.name, program.how) for program in build.programs)
-    yield from (
-        OfferedItem("Programs", "plugin", plugin.name, f"{plugin.type} ({plugin.base})") for plugin in build.plugins
-    )
+    yield from (OfferedItem("Programs", "plugin", one.name, f"{one.type} ({one.base})") for one in build.plugins)
     for launch in build.launches:
         written = ", ".join(name if default is None else f"{name}:={default}" for name, default in launch.arguments)
         yield OfferedItem("Programs", "launch file", launch.path, written)

@@ -27,11 +27,8 @@ def render(report: Report, style: Style = PLAIN) -> str:
     if report.impact is not None and report.impact.effects:
         from .impact import short
 
-        lines += [
-            "",
-            painted(style, "bold", "affected by this change"),
-            *short(report.impact, style, visible(report.base)),
-        ]
+        lines += ["", painted(style, "bold", "affected by this change")]
+        lines += short(report.impact, style, visible(report.base))
     table = _matrix(report, style)
     if table:
         lines += ["", *table]
@@ -74,10 +71,7 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     lines: list[str] = []
     shown: Counter[tuple[str, str]] = Counter()
     for name, group in by_package.items():
-        title = heading(name, style)
-        if folders.get(name, "") not in ("", ".", name):
-            title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[name])}")
-        lines += ["", title]
+        lines += ["", heading(name, folders.get(name, ""), style)]
         # What is said too often is listed where it first was: errors stay before warnings.
         more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
         parts: list[Finding | list[Finding]] = []
@@ -97,9 +91,11 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     return lines
 
 
-def heading(package: str, style: Style) -> str:
-    """The line above what concerns a package. No name begins a line: CI systems read what is there."""
-    return painted(style, "bold", f"package {visible(package)}" if package else "workspace")
+def heading(package: str, folder: str, style: Style, word: str = "package ") -> str:
+    """The line above what concerns a package. word: before its name: CI systems read what a line begins with."""
+    title = painted(style, "bold", f"{word}{visible(package)}" if package else "workspace")
+    shown = folder not in ("", ".", package)
+    return title + (painted(style, "dim", f" {style.symbols[4]} {visible(folder)}") if shown else "")
 
 
 def _head(report: Report, finding: Finding, style: Style) -> str:
@@ -111,12 +107,15 @@ def _head(report: Report, finding: Finding, style: Style) -> str:
     return f"{label}{visible(where)}: {visible(finding.message)}"
 
 
+def place_of(finding: Finding) -> str:
+    """Path, line and column, as far as they are known."""
+    numbers = (finding.line, finding.column) if finding.line else ()
+    return ":".join((visible(finding.path), *(str(number) for number in numbers if number)))
+
+
 def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
     """A finding with its place, its code and its help."""
-    place = visible(finding.path)
-    if finding.line:
-        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
-    lines = [_head(report, finding, style), f"  {painted(style, 'dim', style.symbols[3])} {place}"]
+    lines = [_head(report, finding, style), f"  {painted(style, 'dim', style.symbols[3])} {place_of(finding)}"]
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
     _, shown = focus(finding, excerpt)
     margin = len(str(finding.line))

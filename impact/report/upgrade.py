@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges.console import counted, visible
-from ..analysis.report import ReportedTarget, count_by_severity, coverage_text
+from ..analysis.report import count_by_severity, coverage_text, severities_text
+from ..analysis.target_compare import UpgradeItem
+from ..analysis.upgrade import Upgrade
 from . import html, json
-from .items import as_data, by_severity, item_lines, short_lines
+from .items import as_data, item_lines, short_lines
 from .page import page
 from .style import Style, painted
 from .text import described, heading
 
-if TYPE_CHECKING:
-    from ..analysis.target_compare import UpgradeItem
-    from ..analysis.upgrade import Upgrade
-    from ..rules.rule import Finding
-
-FORMATS = ("text", "json", "html")
 SCHEMA = 1
 
 
@@ -34,7 +30,7 @@ def verdict(found: Upgrade) -> str:
         return f"{way} is safe: no known break in {total}"
     broken = {item.package for item in found.breaks if item.severity == "error"}
     touched = broken or {item.package for item in found.breaks}
-    what = " and ".join(counted(n, severity) for severity, n in by_severity(found.breaks).items() if n)
+    what = severities_text(found.breaks, " and ")
     places = counted(sum(len(item.findings) for item in found.breaks), "place")
     return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to fix, in {places}"
 
@@ -56,14 +52,10 @@ def rest(found: Upgrade) -> list[str]:
     clauses = []
     if found.both:
         them = "it" if len(found.both) == 1 else "them"
-        clauses.append(f"{_counts(found.both)} already on {old}: {found.check_old} lists {them}")
+        clauses.append(f"{severities_text(found.both)} already on {old}: {found.check_old} lists {them}")
     if found.over:
-        clauses.append(f"{_counts(found.over)} only on {old}, not on {new}")
+        clauses.append(f"{severities_text(found.over)} only on {old}, not on {new}")
     return clauses
-
-
-def _counts(findings: Sequence[Finding]) -> str:
-    return ", ".join(counted(n, severity) for severity, n in count_by_severity(findings).items() if n)
 
 
 def text(found: Upgrade, style: Style) -> str:
@@ -104,21 +96,19 @@ def _steps(items: Iterable[UpgradeItem]) -> dict[str, list[UpgradeItem]]:
 
 def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
     folders = {each.name: each.path for each in found.packages}
-    title = painted(style, "bold", visible(package or "workspace")) if number else heading(package, style)
-    if folders.get(package, "") not in ("", ".", package):
-        title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[package])}")
+    title = heading(package, folders.get(package, ""), style, "" if number else "package ")
     return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title
 
 
 def as_json(found: Upgrade) -> str:
     """The list of work for programs."""
     broken = {item.package for item in found.breaks}
-    counts = by_severity(found.breaks)
+    counts = count_by_severity(found.breaks)
     return json.dumped({
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": found.report.version, "data": found.report.data},
-        "from": _target(found.old),
-        "to": _target(found.new),
+        "from": json.target_as_data(found.old) | json.notes_of(found.old),
+        "to": json.target_as_data(found.new) | json.notes_of(found.new),
         "verdict": {
             "safe": not found.breaks,
             "text": verdict(found),
@@ -135,20 +125,8 @@ def as_json(found: Upgrade) -> str:
         "deprecations": _work(found, found.deprecations),
         "both": count_by_severity(found.both),
         "over": count_by_severity(found.over),
-        "coverage": {
-            "packages": len(found.packages),
-            "files": found.report.coverage.files,
-            "parsed": found.report.coverage.parsed,
-            "unresolved": dict(sorted(found.report.coverage.unresolved.items())),
-        },
+        "coverage": json.coverage_as_data(found.report.coverage) | {"packages": len(found.packages)},
     })  # fmt: skip
-
-
-def _target(target: ReportedTarget) -> dict[str, Any]:
-    data: dict[str, Any] = {
-        "name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform,
-    }  # fmt: skip
-    return data | ({"notes": list(target.notes)} if target.notes else {})
 
 
 def _work(found: Upgrade, items: Iterable[UpgradeItem]) -> list[dict[str, Any]]:
@@ -188,7 +166,7 @@ def _data(found: Upgrade) -> Mapping[str, Any]:
         "to": found.new._asdict(),
         "seconds": round(found.seconds, 2),
         "folders": {package.name: package.path for package in found.packages},
-        "rules": {rule.name: rule.summary for rule in report.rules if rule.documentation},
+        "rules": {rule.name: rule.summary for rule in report.rules() if rule.documentation},
         "items": [_row(found, item, group) for group, these in enumerate((found.breaks, found.deprecations))
                   for item in these],
     }  # fmt: skip

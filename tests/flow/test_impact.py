@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.downstream import NOTHING, Impact, chosen, impact_of
+from rosimpact.impact.analysis.downstream import NOTHING, Impact, ImpactResult, chosen, impact_of
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.workspace import linked
 from rosimpact.impact.report import impact as impact_report
@@ -272,8 +272,8 @@ def test_json_is_as_its_schema_says(between: Between):
     schema = json.loads(impact_report.schema())
     page = Path(__file__).parents[2] / "docs/impact.schema.json"
     assert page.read_text() == impact_report.schema(), "rosimpact impact --schema > docs/impact.schema.json"
-    told = impact_report.ImpactHeading("1.2", "ws", "", "main")
-    document = json.loads(impact_report.as_json(between(ROWS["a condition"].files), told))
+    impact = between(ROWS["a condition"].files)
+    document = json.loads(impact_report.as_json(impact, ImpactResult(impact, "ws", "", "main", ()), "1.2"))
     jsonschema.validate(document, schema)
     (change,) = document["changes"]
     assert (change["kind"], change["line"], len(change["reaches"])) == ("condition", 13, 2)

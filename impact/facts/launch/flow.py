@@ -70,6 +70,8 @@ def _ros1_piece(words: list[str], source: str) -> ValuePart:
 
 
 _IDENTIFIER = re.compile(r"[A-Za-z][\w-]*")
+# What ends nothing and begins nothing, wherever it stands.
+_PLAIN = re.compile(r"[\w./:,;=+*-]+")
 
 
 class _Template:
@@ -79,37 +81,26 @@ class _Template:
         self.text = text
         self.at = 0
 
-    def value(self) -> Value:
-        return self._fragments("", 0)
-
-    def _fragments(self, quote: str, depth: int) -> Value:
-        """Literals and substitutions up to a closing quote, or to the end."""
+    def value(self, depth: int = 0, quote: str = "", quoted: bool = True) -> Value:
+        """Literals and substitutions up to a closing quote or, outside of quotes, a blank or bracket; or to the end.
+        quote: in which this stands."""
         values: list[Value] = []
-        start = self.at
         text = self.text
-        held: list[str] = []
-
-        def hold(end: int) -> None:
-            held.append(text[start:end])
-
         while self.at < len(text):
+            plain = _PLAIN.match(text, self.at)
+            if plain is not None:
+                values.append(literal(plain[0]))
+                self.at = plain.end()
+                continue
             c = text[self.at]
-            if c == quote:
+            if c == quote if quoted else c == ")" or c.isspace():
                 break
-            if c == "\\" and self.at + 1 < len(text):
-                hold(self.at)
-                held.append(text[self.at + 1])
-                self.at += 2
-                start = self.at
-            elif c == "$" and text.startswith("$(", self.at):
-                hold(self.at)
-                values += (literal("".join(held)), (self._substitution(depth + 1, quote),))
-                held = []
-                start = self.at
-            else:
-                self.at += 1
-        hold(self.at)
-        values.append(literal("".join(held)))
+            if text.startswith("$(", self.at):
+                values.append((self._substitution(depth + 1, quote),))
+                continue
+            step = 2 if c == "\\" and self.at + 1 < len(text) else 1
+            values.append(literal(text[self.at + step - 1]))
+            self.at += step
         return together(values)
 
     def _substitution(self, depth: int, quote: str) -> ValuePart:
@@ -129,26 +120,11 @@ class _Template:
                 self.at += 1
             elif c in "'\"" and c != quote:
                 self.at += 1
-                args.append(self._fragments(c, depth))
+                args.append(self.value(depth, c))
                 self.at += 1
             else:
-                args.append(self._unquoted(depth, quote))
+                args.append(self.value(depth, quote, False))
         return other(self.text[begin:])
-
-    def _unquoted(self, depth: int, quote: str) -> Value:
-        values: list[Value] = []
-        text = self.text
-        while self.at < len(text):
-            c = text[self.at]
-            if c == ")" or c.isspace():
-                break
-            if text.startswith("$(", self.at):
-                values.append((self._substitution(depth + 1, quote),))
-                continue
-            step = 2 if c == "\\" and self.at + 1 < len(text) else 1
-            values.append(literal(text[self.at + step - 1]))
-            self.at += step
-        return together(values)
 
 
 def _ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
@@ -390,31 +366,20 @@ def words(value: Value) -> list[Value]:
     """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
     found: list[Value] = []
     word: list[Value] = []
-    quote = ""
-    begun = False
+    quote, begun = "", False
     for piece in value:
-        if piece.kind != "text":
-            word.append((piece,))
-            begun = True
-            continue
-        held = ""
-        for c in piece.text:
-            if quote:
-                if c == quote:
-                    quote = ""
-                else:
-                    held += c
-            elif c in "'\"":
-                quote, begun = c, True
-            elif c.isspace():
-                if held or begun:
-                    found.append(together([*word, literal(held)]))
-                word, held, begun = [], "", False
-            else:
-                held += c
+        for part in piece.text if piece.kind == "text" else (piece,):
+            if not isinstance(part, str):
+                word.append((part,))
                 begun = True
-        if held:
-            word.append(literal(held))
-    if word or begun:
-        found.append(together(word))
-    return found
+            elif part == quote:
+                quote = ""
+            elif not quote and part in "'\"":
+                quote, begun = part, True
+            elif not quote and part.isspace():
+                found += [together(word)] if begun else []
+                word, begun = [], False
+            else:
+                word.append(literal(part))
+                begun = True
+    return [*found, together(word)] if begun else found

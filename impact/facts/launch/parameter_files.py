@@ -87,17 +87,17 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     problems: list[Problem] = []
     root: list[YamlNode] = []
-    # Each level: the node, the key that waits for its value, and that key's node, whose place is also a block's.
+    # Each level: the node, the key that waits for its value, that key's node, whose place is also a block's, and what
+    # the node is called.
     levels: list[list[Any]] = []
     anchors: dict[str, YamlNode] = {}
-    pending: list[str] = []
 
     def add(node: YamlNode) -> None:
         if not levels:
             if not root:
                 root.append(node)
             return
-        above, key, _ = levels[-1]
+        above, key, _, _ = levels[-1]
         if above.kind == "list":
             above.value.append(node)
         elif key is None:
@@ -133,11 +133,9 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
                 if len(levels) >= DEEPEST:
                     raise ValueError(f"nested more than {DEEPEST} deep")
                 mark = event.start_mark
-                levels.append([YamlNode(kind, [], mark.line + 1, mark.index), None, None])
-                pending.append(event.anchor or "")
+                levels.append([YamlNode(kind, [], mark.line + 1, mark.index), None, None, event.anchor])
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
-                node = levels.pop()[0]
-                anchor = pending.pop()
+                node, _, _, anchor = levels.pop()
                 if anchor:
                     anchors[anchor] = node
                 add(node)

@@ -7,12 +7,14 @@ what is only known at launch are walked both, and what they add stands under the
 from __future__ import annotations
 
 import ast
+import string
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....edges.dispatch import node_methods
 from ..place import Problem
 from ..python.source import read
+from ..python.text import parameters_in
 from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, plain, together
 from .parameter_files import DEEPEST
 from .python_calls import MAKERS, MOST_TURNS, LaunchCall
@@ -246,13 +248,9 @@ class Walker:
 
     def turns(self, over: Any) -> list[Any] | None:
         """What a loop walks through, None when that is not known."""
-        if isinstance(over, Pairs):
-            items = [key for key, _ in over.items]
-        elif isinstance(over, Items):
-            items = over.items
-        else:
+        if not isinstance(over, (Items, Pairs)) or len(over.items) > MOST_TURNS:
             return None
-        return items if len(items) <= MOST_TURNS else None
+        return [key for key, _ in over.items] if isinstance(over, Pairs) else over.items
 
     def run_While(self, statement: ast.While) -> None:
         self.under(
@@ -286,11 +284,8 @@ class Walker:
 
     def run_Import(self, statement: ast.Import) -> None:
         for alias in statement.names:
-            if alias.asname:
-                self.scope.names[alias.asname] = LaunchModule(alias.name)
-            else:
-                top = alias.name.partition(".")[0]
-                self.scope.names[top] = LaunchModule(top)
+            top = alias.name.partition(".")[0]
+            self.scope.names[alias.asname or top] = LaunchModule(alias.name if alias.asname else top)
 
     def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
         for alias in statement.names:
@@ -468,12 +463,9 @@ class Walker:
             pattern = plain(left.value)
             given = right.items if isinstance(right, Items) else [right]
             if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
-                values: list[Value] = []
-                for place, piece in enumerate(pattern.split("%s")):
-                    values.append(literal(piece))
-                    if place < len(given):
-                        values.append(self.text(given[place], node.right))
-                return TextValue(together(values))
+                first, *others = map(literal, pattern.split("%s"))
+                filled = ((self.text(value, node.right), piece) for value, piece in zip(given, others, strict=True))
+                return TextValue(together((first, *(part for pair in filled for part in pair))))
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return calculated(node, left.value, right.value)
         if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
@@ -516,24 +508,18 @@ class Walker:
                         break
                 continue
             open_.append(truth)
-        return (
-            TextValue((ValuePart("or" if is_or else "and", "", tuple(open_)),))
-            if len(open_) > 1
-            else TextValue(open_[0])
-        )
+        joined: Value = (ValuePart("or" if is_or else "and", "", tuple(open_)),)
+        return TextValue(joined if len(open_) > 1 else open_[0])
 
     def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
             truth = self.truth(node.operand)
-            return (
-                LaunchConstant(not truth) if isinstance(truth, bool) else TextValue((ValuePart("not", "", (truth,)),))
-            )
+            known = isinstance(truth, bool)
+            return LaunchConstant(not truth) if known else TextValue((ValuePart("not", "", (truth,)),))
         value = self.value(node.operand)
-        if isinstance(value, LaunchConstant) and isinstance(value.value, (int, float)):
-            if isinstance(node.op, ast.USub):
-                return LaunchConstant(-value.value)
-            if isinstance(node.op, ast.UAdd):
-                return value
+        is_number = isinstance(value, LaunchConstant) and isinstance(value.value, (int, float))
+        if is_number and not isinstance(node.op, ast.Invert):
+            return LaunchConstant(-value.value) if isinstance(node.op, ast.USub) else value
         return Unknown(source_of(node))
 
     def value_IfExp(self, node: ast.IfExp) -> Any:
@@ -647,33 +633,22 @@ class Walker:
         node = function.node
         if self.calls >= DEEPEST_CALL:
             return Unknown(getattr(node, "name", "lambda"))
-        scope = LaunchScope(function.scope)
-        signature = node.args
-        names = [a.arg for a in (*signature.posonlyargs, *signature.args)]
-        if function.self is not None:
-            arguments = [function.self, *arguments]
+        scope, depth = LaunchScope(function.scope), len(self.conditions)
         outer = (self.scope, self.returns, self.base)
         self.scope = function.scope
-        for parameter, default in zip(reversed(names), reversed(signature.defaults), strict=False):
-            scope.names[parameter] = self.value(default)
-        for parameter, default in zip(signature.kwonlyargs, signature.kw_defaults, strict=True):
-            if default is not None:
-                scope.names[parameter.arg] = self.value(default)
-        for parameter in (*names, *(a.arg for a in signature.kwonlyargs)):
-            scope.names.setdefault(parameter, Unknown(parameter))
-        scope.names.update(zip(names, arguments, strict=False))
-        if signature.vararg is not None:
-            scope.names[signature.vararg.arg] = Items(arguments[len(names) :], len(self.conditions))
-        known = {*names, *(a.arg for a in signature.kwonlyargs)}
-        rest: list[tuple[Any, Any]] = []
-        for key, value in keywords.items():
-            if key in known:
-                scope.names[key] = value
+        positional = iter(arguments if function.self is None else [function.self, *arguments])
+        rest = dict(keywords)
+        for kind, parameter, default in parameters_in(node.args):
+            name = parameter.arg
+            if kind == "args":
+                value: Any = Items([*positional], depth)
+            elif kind == "kwargs":
+                value = Pairs([(TextValue(literal(key)), each) for key, each in rest.items()], depth)
             else:
-                rest.append((TextValue(literal(key)), value))
-        if signature.kwarg is not None:
-            scope.names[signature.kwarg.arg] = Pairs(rest, len(self.conditions))
-        self.scope, self.returns, self.base = scope, [], len(self.conditions)
+                missing = Unknown(name) if default is None else self.value(default)
+                value = rest.pop(name, missing if kind == "keyword" else next(positional, missing))
+            scope.names[name] = value
+        self.scope, self.returns, self.base = scope, [], depth
         self.calls += 1
         try:
             if isinstance(node, ast.Lambda):
@@ -701,23 +676,19 @@ class Walker:
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
-                return LaunchConstant(None)
-            if name == "extend" and isinstance(first, Items):
-                self.extend(receiver, first.items)
-                return LaunchConstant(None)
-            if name == "extend" and arguments:
-                self.extend(receiver, [Unknown(source_of(node.args[0]))])
-                return LaunchConstant(None)
-            if name == "insert" and len(arguments) == 2:
+            elif name == "extend" and arguments:
+                self.extend(receiver, first.items if isinstance(first, Items) else [Unknown(source_of(node.args[0]))])
+            elif name == "insert" and len(arguments) == 2:
                 place = first.value if isinstance(first, LaunchConstant) and isinstance(first.value, int) else 0
                 receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
-                return LaunchConstant(None)
-            if name == "remove" and first in receiver.items:
+            elif name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
-                return LaunchConstant(None)
-            if name == "copy":
+            elif name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
-        elif isinstance(receiver, Pairs):
+            else:
+                return Unknown(source_of(node))
+            return LaunchConstant(None)
+        if isinstance(receiver, Pairs):
             depth = len(self.conditions)
             if name == "items":
                 pairs = [
@@ -772,8 +743,6 @@ class Walker:
         return Unknown(source_of(node))
 
     def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        import string
-
         pattern = plain(value)
         if pattern is None:
             return Unknown(source_of(node))
@@ -788,9 +757,8 @@ class Walker:
                     return Unknown(source_of(node))
                 if field == "":
                     field, place = str(place), place + 1
-                given = (
-                    arguments[int(field)] if field.isdigit() and int(field) < len(arguments) else keywords.get(field)
-                )
+                is_place = field.isdigit() and int(field) < len(arguments)
+                given = arguments[int(field)] if is_place else keywords.get(field)
                 if given is None:
                     return Unknown(source_of(node))
                 values.append(self.text(given, node))
@@ -816,7 +784,7 @@ class Walker:
             return value.value if isinstance(value, FilledFile) else self.text(value.value, node)
         if isinstance(value, Either):
             return (ValuePart("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
-        if isinstance(value, Items) and not value.is_launch:
+        if isinstance(value, Items) and value.kind != "launch":
             return together([self.text(item, node) for item in value.items])
         if isinstance(value, Unknown):
             return (other(value.source),)
@@ -858,9 +826,8 @@ STRING_METHODS = frozenset(
 
 def _continues(body: Sequence[ast.stmt]) -> bool:
     """Whether the jump that ends a turn of a loop goes on with the next."""
-    return any(isinstance(node, ast.Continue) for statement in body for node in ast.walk(statement)) and not any(
-        isinstance(node, (ast.Break, ast.Return)) for statement in body for node in ast.walk(statement)
-    )
+    kinds = {node.__class__ for statement in body for node in ast.walk(statement)}
+    return ast.Continue in kinds and kinds.isdisjoint((ast.Break, ast.Return))
 
 
 _STATEMENTS = node_methods(Walker, "run_")

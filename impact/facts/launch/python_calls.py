@@ -284,7 +284,7 @@ def _group(call: LaunchCall) -> Any:
 
 def _include(call: LaunchCall) -> Any:
     source = call.get(0, "launch_description_source")
-    if isinstance(source, Items) and source.is_launch:
+    if isinstance(source, Items) and source.kind == "launch":
         return call.group(call.actions(source))
     return call.action("include", call.attributes(("file", source)), _passed(call, call.get(1, "launch_arguments")))
 
@@ -358,10 +358,6 @@ def _register(call: LaunchCall) -> Any:
         conditions = (*call.conditions(), *handler.conditions)
         return Action(handler.kind, handler.line, handler.attributes, conditions, handler.children)
     return handler if handler is not None else call.unknown
-
-
-def _process(call: LaunchCall) -> Any:
-    return call.action("process", [("command", text) for text in call.texts(call.get(-1, "cmd"))])
 
 
 def _description(call: LaunchCall) -> Any:
@@ -438,10 +434,6 @@ def _first(is_str: bool) -> Maker:
     return make
 
 
-def _path(call: LaunchCall) -> Any:
-    return _parts("join", True)(call) if len(call.arguments) > 1 else _first(True)(call)
-
-
 def _str(call: LaunchCall) -> Any:
     given = call.get(0, "object")
     return given if isinstance(given, TextValue) and given.is_str else TextValue(call.text(given))
@@ -469,10 +461,6 @@ def _choice(call: LaunchCall) -> Any:
     given = (call.get(0, "condition"), call.get(1, "if_value"), call.get(2, "else_value"))
     values = (literal("") if value is None else call.text(value) for value in given)
     return TextValue((ValuePart("choose", "", tuple(values)),), False)
-
-
-def _not_equals(call: LaunchCall) -> Any:
-    return TextValue((ValuePart("not", "", (_parts("equals")(call).value,)),), False)
 
 
 def _parameter_value(call: LaunchCall) -> Any:
@@ -603,7 +591,10 @@ MAKERS: dict[str, Maker] = {
     "OpaqueFunction": _opaque,
     **dict.fromkeys(("TimerAction", "RosTimer"), _timer),
     "RegisterEventHandler": _register,
-    **dict.fromkeys(("ExecuteProcess", "ExecuteLocal"), _process),
+    **dict.fromkeys(
+        ("ExecuteProcess", "ExecuteLocal"),
+        lambda call: call.action("process", [("command", text) for text in call.texts(call.get(-1, "cmd"))]),
+    ),
     **dict.fromkeys(
         ("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnStateTransition", "OnShutdown", "OnExecutionComplete",
          "EventHandler", "OnActionEventBase"),
@@ -637,7 +628,7 @@ MAKERS: dict[str, Maker] = {
     ),
     "Command": _piece("command", "command"),
     "EqualsSubstitution": _parts("equals"),
-    "NotEqualsSubstitution": _not_equals,
+    "NotEqualsSubstitution": lambda call: TextValue((ValuePart("not", "", (_parts("equals")(call).value,)),), False),
     "NotSubstitution": _parts("not"),
     **dict.fromkeys(("AndSubstitution", "AllSubstitution"), _parts("and")),
     **dict.fromkeys(("OrSubstitution", "AnySubstitution"), _parts("or")),
@@ -663,7 +654,10 @@ MAKERS: dict[str, Maker] = {
     "normalize_to_list_of_substitutions": _first(False),
     "join": _path_join,
     "dirname": _dirname,
-    **dict.fromkeys(("Path", "PurePath"), _path),
+    **dict.fromkeys(
+        ("Path", "PurePath"),
+        lambda call: (_parts("join", True) if len(call.arguments) > 1 else _first(True))(call),
+    ),
     "str": _str,
     **dict.fromkeys(("getenv", "get"), _environment),
     "range": _range,

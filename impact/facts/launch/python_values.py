@@ -104,10 +104,6 @@ class Items(msgspec.Struct, eq=False):
     depth: int
     kind: str = "list"
 
-    @property
-    def is_launch(self) -> bool:
-        return self.kind == "launch"
-
 
 class Pairs(msgspec.Struct, eq=False):
     """A dict, as pairs; a later pair of the same key replaces the earlier."""

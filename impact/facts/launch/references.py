@@ -74,7 +74,7 @@ class _Found:
 
     def mentions(self, text: str, offset: int, conditional: bool) -> None:
         """All substitutions and resource URLs of a text; offset: where it starts in the file."""
-        for m in MENTION.finditer(text):
+        for m in MENTION.finditer(text) if any(mark in text for mark in MARKS) else ():
             at = offset + m.start()
             verb = m["verb"]
             if verb is not None:
@@ -214,10 +214,8 @@ def _attribute(element: Element, *names: str) -> Attribute | None:
 def _everything(found: _Found, element: Element, conditional: bool) -> None:
     """Mentions in all attributes and the text of an element."""
     for attribute in element.attributes:
-        if any(mark in attribute.value for mark in MARKS):
-            found.mentions(attribute.value, attribute.offset, conditional)
-    if element.text and any(mark in element.text for mark in MARKS):
-        found.mentions(element.text, element.text_offset, conditional)
+        found.mentions(attribute.value, attribute.offset, conditional)
+    found.mentions(element.text, element.text_offset, conditional)
 
 
 NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composable_node_container"})

@@ -3,7 +3,6 @@ them."""
 
 import builtins
 import symtable
-from collections.abc import Iterator
 
 PYTHON2_BUILTINS = frozenset((
     "StandardError", "apply", "basestring", "buffer", "cmp", "coerce", "execfile", "file", "intern", "long",
@@ -34,7 +33,9 @@ def scope_names(text: str) -> tuple[frozenset[str], frozenset[str]] | None:
         return None
     bound: set[str] = set()
     asked: set[str] = set()
-    for table in _tables(top):
+    tables = [top]
+    for table in tables:
+        tables += table.get_children()
         for symbol in table.get_symbols():
             binds = symbol.is_assigned() or symbol.is_imported()
             if binds and (table is top or symbol.is_declared_global()):
@@ -42,9 +43,3 @@ def scope_names(text: str) -> tuple[frozenset[str], frozenset[str]] | None:
             elif symbol.is_referenced() and (table is top or symbol.is_global()):
                 asked.add(symbol.get_name())
     return None if _DYNAMIC & (asked | bound) else (frozenset(asked - bound - _ALWAYS), frozenset(bound))
-
-
-def _tables(table: symtable.SymbolTable) -> Iterator[symtable.SymbolTable]:
-    yield table
-    for inner in table.get_children():
-        yield from _tables(inner)

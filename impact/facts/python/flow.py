@@ -527,31 +527,31 @@ def breaks(statements: list[ast.stmt]) -> bool:
     stack: list[ast.AST] = list(statements)
     while stack:
         node = stack.pop()
-        cls = node.__class__
-        if cls is ast.Break:
+        if node.__class__ is ast.Break:
             return True
-        if cls in (ast.For, ast.While, ast.AsyncFor):
-            stack.extend(node.orelse)  # type: ignore[attr-defined]
-        elif cls in (ast.If, ast.With, ast.AsyncWith, ast.Try) or cls.__name__ in ("TryStar", "Match"):
-            for field in ("body", "orelse", "finalbody"):
-                stack.extend(getattr(node, field, ()))
-            for part in (*getattr(node, "handlers", ()), *getattr(node, "cases", ())):
-                stack.extend(part.body)
+        if node.__class__ in (ast.For, ast.While, ast.AsyncFor):
+            stack += node.orelse  # type: ignore[attr-defined]
+        elif not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            stack += _inside(node)
     return False
 
 
 def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
     """The functions defined by statements, under an if or try too."""
-    stack = list(reversed(statements))
+    stack: list[ast.AST] = list(reversed(statements))
     while stack:
         node = stack.pop()
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
         elif node.__class__ in (ast.If, ast.Try):
-            for field in ("finalbody", "orelse", "body"):
-                stack.extend(reversed(getattr(node, field, ())))
-            for handler in getattr(node, "handlers", ()):
-                stack.extend(reversed(handler.body))
+            stack += reversed(_inside(node))
+
+
+def _inside(node: ast.AST) -> list[ast.stmt]:
+    """The statements right in another one."""
+    parts = (node, *getattr(node, "handlers", ()), *getattr(node, "cases", ()))
+    fields = ((part, field) for part in parts for field in ("body", "orelse", "finalbody"))
+    return [statement for part, field in fields for statement in getattr(part, field, ())]
 
 
 _SWALLOWS = re.compile(r"(?:[\w.]+\.)?(?:suppress|raises|assertRaises\w*)\(")

@@ -15,7 +15,7 @@ from itertools import pairwise
 from ....edges.dispatch import node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import SourceText, child_fields, format_pieces, percent_pieces, printable
+from .text import SourceText, child_fields, format_pieces, parameters_in, percent_pieces, printable
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -142,15 +142,9 @@ class Expressions(SourceText):
             return
         for field in _CHILDREN[node.__class__]:
             child = getattr(node, field)
-            if child.__class__ is list:
-                for item in child:
-                    if item is not None:
-                        self.visit(item)
-            elif child is not None:
-                self.visit(child)
-
-    def visit_Constant(self, node) -> None:
-        pass
+            for one in child if child.__class__ is list else (child,):
+                if one is not None:
+                    self.visit(one)
 
     def visit_Name(self, node: ast.Name) -> None:
         name = node.id
@@ -338,13 +332,12 @@ class Expressions(SourceText):
     def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
+        kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
         if len(elements) > LONGEST_LIST:
-            kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
             for each in elements[LONGEST_LIST:]:
                 self.visit(each)
             kept.append(FlowExpr("other", f"{len(elements) - LONGEST_LIST} more"))
-            return FlowExpr("list", "", tuple(kept))
-        return FlowExpr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
+        return FlowExpr("list", "", tuple(kept))
 
     value_List = value_Set = value_Tuple
 
@@ -383,11 +376,11 @@ class Expressions(SourceText):
         self.waiting.append((body, node.body))
         return FlowExpr("lambda", name)
 
-    def new_body(self, name: str, node, arguments: ast.arguments, cls: ClassBody | None = None) -> Body:
+    def new_body(self, name: str, node, arguments: ast.arguments) -> Body:
         """A function that stands where the reader is, with its parameters; defaults are visited here."""
         current = self.body
         outer = current.outer if current.is_class else current if current.name else None
-        body = Body(name, cls or current.cls, node.lineno, node.end_lineno, outer)
+        body = Body(name, current.cls, node.lineno, node.end_lineno, outer)
         body.made = self.guard
         body.this = current.this
         body.parameters = self.parameters(arguments)
@@ -400,20 +393,14 @@ class Expressions(SourceText):
 
     def parameters(self, arguments: ast.arguments) -> tuple[FlowParameter, ...]:
         found: list[FlowParameter] = []
-        positional = [*arguments.posonlyargs, *arguments.args]
-        without = len(positional) - len(arguments.defaults)
-        for place, argument in enumerate(positional):
-            default = None if place < without else self.value(arguments.defaults[place - without], "escape")
-            found.append(FlowParameter(argument.arg, self.annotation(argument.annotation), default))
-        if arguments.vararg is not None:
-            found.append(FlowParameter("*" + arguments.vararg.arg, self.annotation(arguments.vararg.annotation)))
-        elif arguments.kwonlyargs:
-            found.append(FlowParameter("*"))
-        for argument, given in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=False):
-            default = None if given is None else self.value(given, "escape")
-            found.append(FlowParameter(argument.arg, self.annotation(argument.annotation), default))
-        if arguments.kwarg is not None:
-            found.append(FlowParameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
+        starred = False
+        for kind, argument, default in parameters_in(arguments):
+            if kind == "keyword" and not starred:
+                found.append(FlowParameter("*"))
+            starred = starred or kind in ("args", "keyword")
+            value = None if default is None else self.value(default, "escape")
+            name = {"args": "*", "kwargs": "**"}.get(kind, "") + argument.arg
+            found.append(FlowParameter(name, self.annotation(argument.annotation), value))
         return tuple(found)
 
     def value_ListComp(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:

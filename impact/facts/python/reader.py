@@ -119,44 +119,19 @@ class PythonReader(ObjectUses, SourceText):
         self.looked_up_by_functions()
 
     def block(self, nodes) -> None:
-        handlers = _HANDLERS
         for node in nodes:
-            handler = handlers.get(node.__class__)
-            if handler is None:
-                self.inside(node)
-            else:
-                handler(self, node)
+            self.visit(node)
 
     def visit(self, node) -> None:
-        handler = _HANDLERS.get(node.__class__)
-        if handler is None:
-            self.inside(node)
-        else:
-            handler(self, node)
+        _HANDLERS.get(node.__class__, PythonReader.inside)(self, node)
 
     def inside(self, node) -> None:
         """Visits the children of a node."""
-        handlers = _HANDLERS
         for field in _CHILDREN.get(node.__class__, ()):
             child = getattr(node, field)
-            if child.__class__ is list:
-                for item in child:
-                    handler = handlers.get(item.__class__)
-                    if handler is not None:
-                        handler(self, item)
-                    elif item is not None:
-                        self.inside(item)
-            elif child is not None:
-                handler = handlers.get(child.__class__)
-                if handler is not None:
-                    handler(self, child)
-                else:
-                    self.inside(child)
-
-    def visit_Pass(self, node) -> None:
-        pass
-
-    visit_Break = visit_Continue = visit_Pass
+            for one in child if child.__class__ is list else (child,):
+                if one is not None:
+                    self.visit(one)
 
     def column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
@@ -237,18 +212,13 @@ class PythonReader(ObjectUses, SourceText):
             if not rest:
                 continue
             for dotted, extra in self.imported(head, scope):
-                if dotted.startswith("."):
-                    continue
-                if f"{dotted}.{rest}" in own:
+                if dotted.startswith(".") or f"{dotted}.{rest}" in own:
                     continue
                 both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
                 key = (f"{dotted}.{rest}", both)
                 place = (line, self.column(line, offset))
-                known = found.get(key)
-                if known is None:
-                    found[key] = (*place, lazy)
-                else:
-                    found[key] = (*min(place, known[:2]), lazy and known[2])
+                known = found.get(key, (*place, lazy))
+                found[key] = (*min(place, known[:2]), lazy and known[2])
         return tuple(
             AttributeUse(text, line, column, conditions, lazy)
             for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
@@ -285,11 +255,8 @@ class PythonReader(ObjectUses, SourceText):
             column = self.column(alias.lineno, alias.col_offset)
             module = sys.intern(alias.name)
             self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
-            if alias.asname:
-                self.bind_import(alias.asname, module, self.use_conditions)
-            else:
-                head = module.partition(".")[0]
-                self.bind_import(head, head, self.use_conditions)
+            head = module.partition(".")[0]
+            self.bind_import(alias.asname or head, module if alias.asname else head, self.use_conditions)
 
     def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
         module = sys.intern(node.module or "")
@@ -377,12 +344,11 @@ class PythonReader(ObjectUses, SourceText):
             test = self.source(plain)
         if test.endswith(".TYPE_CHECKING"):
             test = "TYPE_CHECKING"
-        condition = Condition("python", test, negated)
         about_machine = _ABOUT_MACHINE.search(test) is not None
         first = len(self.ways)
-        self.under(node.body, condition, condition if about_machine else None)
-        condition = Condition("python", test, not negated)
-        self.under(node.orelse, condition, condition if about_machine else None)
+        for branch, denied in ((node.body, negated), (node.orelse, not negated)):
+            condition = Condition("python", test, denied)
+            self.under(branch, condition, condition if about_machine else None)
         self.merge(first)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
@@ -390,14 +356,11 @@ class PythonReader(ObjectUses, SourceText):
         test = self.source(node.test)
         before = self.use_conditions, self.conditional
         self.conditional = True
-        if _ABOUT_MACHINE.search(test):
-            self.use_conditions = (*before[0], Condition("python", test))
-            self.visit(node.body)
-            self.use_conditions = (*before[0], Condition("python", test, True))
-            self.visit(node.orelse)
-        else:
-            self.visit(node.body)
-            self.visit(node.orelse)
+        about_machine = _ABOUT_MACHINE.search(test) is not None
+        for branch, denied in ((node.body, False), (node.orelse, True)):
+            if about_machine:
+                self.use_conditions = (*before[0], Condition("python", test, denied))
+            self.visit(branch)
         self.use_conditions, self.conditional = before
 
     def visit_Try(self, node) -> None:
@@ -474,8 +437,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
-        for decorator in node.decorator_list:
-            self.visit(decorator)
+        self.block(node.decorator_list)
         arguments = node.args
         if arguments.posonlyargs:
             self.need(8, "positional-only parameters", node)
@@ -514,14 +476,11 @@ class PythonReader(ObjectUses, SourceText):
         self.visit_FunctionDef(node)
 
     def arguments(self, arguments: ast.arguments) -> None:
-        for default in (*arguments.defaults, *arguments.kw_defaults):
-            if default is not None:
-                self.visit(default)
-        for group in (arguments.posonlyargs, arguments.args, arguments.kwonlyargs):
-            for argument in group:
-                if argument.annotation is not None:
-                    self.need(0, "annotations", argument)
-                    self.evaluated(argument.annotation)
+        self.block(filter(None, (*arguments.defaults, *arguments.kw_defaults)))
+        for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+            if argument.annotation is not None:
+                self.need(0, "annotations", argument)
+                self.evaluated(argument.annotation)
 
     def evaluated(self, annotation: ast.expr) -> None:
         """Visits an annotation. Where it is sure to be evaluated, what it needs is a need of the file."""
@@ -545,13 +504,9 @@ class PythonReader(ObjectUses, SourceText):
         return not any(node.id in scope.bound or node.id in scope.imports for scope in self.scope.chain)
 
     def parameters(self, arguments: ast.arguments) -> None:
-        names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
-        self.scope.parameters = names
-        self.scope.bound.update(names)
-        self.scope.bound.update(argument.arg for argument in arguments.kwonlyargs)
-        for argument in (arguments.vararg, arguments.kwarg):
-            if argument is not None:
-                self.scope.bound.add(argument.arg)
+        self.scope.parameters = names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+        others = filter(None, (*arguments.kwonlyargs, arguments.vararg, arguments.kwarg))
+        self.scope.bound.update(names, (argument.arg for argument in others))
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
         self.arguments(node.args)
@@ -566,8 +521,7 @@ class PythonReader(ObjectUses, SourceText):
         self.scope.bound.add(node.name)
         self.block(node.decorator_list)
         self.block(node.bases)
-        for keyword in node.keywords:
-            self.visit(keyword.value)
+        self.block(keyword.value for keyword in node.keywords)
         if getattr(node, "type_params", None):
             self.need(12, "type parameters", node)
         before = self.scope, self.inside_class, self.me
@@ -696,8 +650,7 @@ class PythonReader(ObjectUses, SourceText):
     def visit_List(self, node) -> None:
         if len(node.elts) > 1:
             self.path(node)
-        for item in node.elts:
-            self.visit(item)
+        self.block(node.elts)
 
     visit_Tuple = visit_List
 
@@ -762,8 +715,7 @@ class PythonReader(ObjectUses, SourceText):
             self.block(node.args[1:])
         else:
             self.block(node.args)
-        for keyword in node.keywords:
-            self.visit(keyword.value)
+        self.block(keyword.value for keyword in node.keywords)
         self.conditional = before
 
     def package_call(self, node: ast.Call, function: str) -> None:
@@ -785,14 +737,11 @@ class PythonReader(ObjectUses, SourceText):
             if looking is None:
                 continue
             index, parameter = self.lookups[looking, name]
-            argument = node.args[index] if index < len(node.args) else None
-            for keyword in node.keywords:
-                if keyword.arg == parameter:
-                    argument = keyword.value
+            given = [keyword.value for keyword in node.keywords if keyword.arg == parameter] or node.args[index:]
             self.scope = scope
-            package = None if argument is None else self.package_name(argument)
-            if argument is not None and package is not None:
-                self.refer("package", package[0], "", argument, conditional or package[1])
+            package = self.package_name(given[0]) if given else None
+            if package is not None:
+                self.refer("package", package[0], "", given[0], conditional or package[1])
 
     def launched(self, keywords: dict) -> None:
         """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
@@ -802,23 +751,18 @@ class PythonReader(ObjectUses, SourceText):
         executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
         plugin = keywords.get("plugin") or keywords.get("node_plugin")
         name = self.text(executable or plugin) if executable or plugin else None
-        if isinstance(name, str) and name:
-            kind = "executable" if executable else "plugin"
-            self.refer(kind, package[0], name, executable or plugin, package[1])
-        else:
-            self.refer("package", package[0], "", keywords["package"], package[1])
+        kind, at = ("executable" if executable else "plugin"), executable or plugin
+        if not isinstance(name, str) or not name:
+            kind, name, at = "package", "", keywords["package"]
+        self.refer(kind, package[0], name, at, package[1])
 
     def command(self, node: ast.Call, keywords: dict) -> None:
         """A program started with literal arguments, and what rosrun, roslaunch and ros2 are told to start."""
         given = keywords.get("cmd") or keywords.get("args") or keywords.get("command") or next(iter(node.args), None)
         words: list[str | None] = []
-        if isinstance(given, (ast.List, ast.Tuple)):
-            for item in given.elts:
-                text = self.text(item)
-                words += text.split() if isinstance(text, str) else [None]
-        elif given is not None:
-            text = self.text(given)
-            words = [*text.split()] if isinstance(text, str) else [None]
+        for item in given.elts if isinstance(given, (ast.List, ast.Tuple)) else filter(None, (given,)):
+            text = self.text(item)
+            words += text.split() if isinstance(text, str) else [None]
         program = words[0] if words else None
         if program is None or not _PROGRAM.fullmatch(program):
             return

@@ -15,7 +15,7 @@ from ..condition import Condition
 from ..place import Problem
 from .reader import EXCEPT, IMPORT_ERRORS, TRY
 from .source import read
-from .text import caught_by, dotted
+from .text import caught_by, dotted, parameters_in
 
 
 class PythonParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -187,10 +187,9 @@ class _Module:
                     self.assigned(item.optional_vars, None, "", scope, conditions)
             hides = any(_dotted(item.context_expr).endswith("suppress") for item in node.items)
             self.block(node.body, scope, (*conditions, TRY) if hides else conditions)
-        elif isinstance(node, (ast.For, ast.AsyncFor)):
-            self.assigned(node.target, None, "", scope, conditions)
-            self.block([*node.body, *node.orelse], scope, conditions)
-        elif isinstance(node, ast.While):
+        elif isinstance(node, (ast.For, ast.AsyncFor, ast.While)):
+            if not isinstance(node, ast.While):
+                self.assigned(node.target, None, "", scope, conditions)
             self.block([*node.body, *node.orelse], scope, conditions)
         elif isinstance(node, ast.Match):
             for case in node.cases:
@@ -299,10 +298,9 @@ class _Module:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
         self.block(node.body, name, ())
-        deprecated = next(
-            (b.deprecated for b in self.names[place:] if b.name == f"{name}.__init__" and b.deprecated), ""
-        )
-        if deprecated and not self.names[place].deprecated:
+        made = [bound.deprecated for bound in self.names[place:] if bound.name == f"{name}.__init__"]
+        if any(made) and not self.names[place].deprecated:
+            deprecated = next(filter(None, made))
             self.names[place] = msgspec.structs.replace(self.names[place], deprecated=deprecated)
 
     def assigned(
@@ -442,22 +440,9 @@ _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
 
 def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:
     """Parameters in order, `self` and `cls` among them."""
-    positional = [(a, "positional") for a in arguments.posonlyargs] + [(a, "normal") for a in arguments.args]
-    missing = len(positional) - len(arguments.defaults)
-    for number, (argument, kind) in enumerate(positional):
-        default = arguments.defaults[number - missing] if number >= missing else None
-        yield _parameter(argument, kind, default)
-    if arguments.vararg is not None:
-        yield _parameter(arguments.vararg, "args", None)
-    for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
-        yield _parameter(argument, "keyword", default)
-    if arguments.kwarg is not None:
-        yield _parameter(arguments.kwarg, "kwargs", None)
-
-
-def _parameter(argument: ast.arg, kind: str, default: ast.expr | None) -> PythonParameter:
-    annotation = _text(argument.annotation) if argument.annotation is not None else ""
-    return PythonParameter(argument.arg, kind, None if default is None else _text(default), annotation)
+    for kind, argument, default in parameters_in(arguments):
+        annotation = _text(argument.annotation) if argument.annotation is not None else ""
+        yield PythonParameter(argument.arg, kind, None if default is None else _text(default), annotation)
 
 
 def _flat(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:

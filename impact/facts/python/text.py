@@ -4,7 +4,7 @@ import ast
 import operator
 import re
 import string
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 # A comment, or a string in which a `#` is none.
@@ -48,6 +48,20 @@ def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
     }
     # Their fields hold strings and constants, not nodes.
     return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
+
+
+def parameters_in(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:
+    """(kind, parameter, default) in order. kind: `positional` (before `/`), `normal`, `args` (`*args`), `keyword`
+    (behind `*`) or `kwargs`."""
+    kinds = ["positional"] * len(arguments.posonlyargs) + ["normal"] * len(arguments.args)
+    defaults = [None] * (len(kinds) - len(arguments.defaults)) + arguments.defaults
+    yield from zip(kinds, (*arguments.posonlyargs, *arguments.args), defaults, strict=True)
+    if arguments.vararg is not None:
+        yield "args", arguments.vararg, None
+    for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
+        yield "keyword", argument, default
+    if arguments.kwarg is not None:
+        yield "kwargs", arguments.kwarg, None
 
 
 def dotted(node: ast.expr) -> str:
@@ -117,28 +131,18 @@ def percent_pieces(text: str) -> list[str | int | tuple[str]] | None:
     pieces: list[str | int | tuple[str]] = []
     literal, at, number = "", 0, 0
     for match in _PERCENT.finditer(text):
-        before = text[at : match.start()]
-        if "%" in before or match.group("width") == "*" or match.group("precision") == "*":
+        before, at = text[at : match.start()], match.end()
+        if "%" in before or "*" in (match["width"], match["precision"]):
             return None
         literal += before
-        at = match.end()
-        if match.group("kind") == "%":
+        if match["kind"] == "%":
             literal += "%"
             continue
-        if literal:
-            pieces.append(literal)
-            literal = ""
-        if match.group("key") is not None:
-            pieces.append((match.group("key"),))
-        else:
-            pieces.append(number)
-            number += 1
+        pieces += [literal] if literal else []
+        pieces.append(number if match["key"] is None else (match["key"],))
+        literal, number = "", number + (match["key"] is None)
     literal += text[at:]
-    if "%" in text[at:]:
-        return None
-    if literal:
-        pieces.append(literal)
-    return pieces
+    return None if "%" in text[at:] else [*pieces, *([literal] if literal else [])]
 
 
 def format_pieces(text: str) -> list[str | int | tuple[str]] | None:

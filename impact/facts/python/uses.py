@@ -448,23 +448,17 @@ def _given(call: ast.Call) -> CallArguments:
 
 
 def _parameters(arguments: ast.arguments) -> str:
-    """Parameters of a method without the first, as Python writes them."""
-    positional = [*arguments.posonlyargs, *arguments.args]
-    required = len(positional) - len(arguments.defaults)
-    texts = [a.arg + ("" if at < required else "=...") for at, a in enumerate(positional)]
-    if arguments.posonlyargs:
-        texts.insert(len(arguments.posonlyargs), "/")
-    del texts[:1]
-    if texts[:1] == ["/"]:
-        del texts[:1]
-    if arguments.vararg is not None:
-        texts.append(f"*{arguments.vararg.arg}")
-    elif arguments.kwonlyargs:
-        texts.append("*")
-    texts += [
-        a.arg + ("" if default is None else "=...")
-        for a, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
-    ]
-    if arguments.kwarg is not None:
-        texts.append(f"**{arguments.kwarg.arg}")
-    return f"({', '.join(texts)})"
+    """Parameters of a method without the first, as Python writes them, with `...` for defaults."""
+    some = ast.Constant(...)
+    first = [ast.arg(one.arg) for one in arguments.posonlyargs[1:]]
+    rest = [ast.arg(one.arg) for one in arguments.args[not arguments.posonlyargs :]]
+    shown = ast.arguments(
+        first,
+        rest,
+        arguments.vararg and ast.arg(arguments.vararg.arg),
+        [ast.arg(one.arg) for one in arguments.kwonlyargs],
+        [default and some for default in arguments.kw_defaults],
+        arguments.kwarg and ast.arg(arguments.kwarg.arg),
+        [some] * min(len(arguments.defaults), len(first) + len(rest)),
+    )
+    return f"({ast.unparse(shown)})"

@@ -124,13 +124,9 @@ class PythonValues(Constants):
 
     def package_argument(self, node: ast.Call) -> tuple[str, bool] | None:
         """The package a call names, and whether that rests on a launch argument's default."""
-        argument = node.args[0] if node.args else None
-        for keyword in node.keywords:
-            if keyword.arg in ("package", "package_name"):
-                argument = keyword.value
-        if argument is None:
-            return None
-        return self.package_name(argument)
+        named = [keyword.value for keyword in node.keywords if keyword.arg in ("package", "package_name")]
+        given = named[-1:] or node.args
+        return self.package_name(given[0]) if given else None
 
     def package_name(self, argument) -> tuple[str, bool] | None:
         value = self.text(argument)

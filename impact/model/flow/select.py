@@ -74,15 +74,19 @@ def selected(
     if not asked:
         kept_nodes |= {""}
         kept_names |= {""}
-    part = structs.replace(
+    return Selection(part_of(graph, kept_nodes, kept_names), len(hidden), asked)
+
+
+def part_of(graph: Graph, nodes: Collection[str], names: Collection[str]) -> Graph:
+    """What a graph has of some nodes, by their ids, and of some names."""
+    return structs.replace(
         graph,
-        nodes=tuple(node for node in graph.nodes if node.id in kept_nodes),
-        endpoints=tuple(e for e in graph.endpoints if e.node in kept_nodes and e.topic in kept_names),
-        publishes=tuple(p for p in graph.publishes if p.node in kept_nodes and p.topic in kept_names),
-        timers=tuple(t for t in graph.timers if t.node in kept_nodes),
-        parameters=tuple(p for p in graph.parameters if p.node in kept_nodes),
+        nodes=tuple(node for node in graph.nodes if node.id in nodes),
+        endpoints=tuple(e for e in graph.endpoints if e.node in nodes and e.topic in names),
+        publishes=tuple(p for p in graph.publishes if p.node in nodes and p.topic in names),
+        timers=tuple(t for t in graph.timers if t.node in nodes),
+        parameters=tuple(p for p in graph.parameters if p.node in nodes),
     )
-    return Selection(part, len(hidden), asked)
 
 
 def _fits(name: str, patterns: Collection[str], prefixes: Sequence[str]) -> bool:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import posixpath
 import re
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Sequence
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import msgspec
@@ -186,28 +186,22 @@ class Filling:
         return (self.text(piece.parts[0]), piece.parts[1:]) if piece.parts else (known(""), ())
 
     def fill_arg(self, piece: ValuePart) -> LaunchText:
+        """A launch argument or an environment variable."""
         name, rest = self.named(piece)
         if name.value is None:
             return unknown(name.shown, *name.reasons)
-        text = self.scope.arguments.get(name.value)
+        is_argument = piece.kind == "arg"
+        text = (self.scope.arguments if is_argument else self.scope.environment).get(name.value)
         if text is not None:
-            return text._replace(assumed=every((text.assumed, name.assumed)))
+            return text._replace(assumed=every((text.assumed, name.assumed))) if is_argument else text
+        shown = name.value if is_argument else f"${name.value}"
         if rest:
             default = self.text(rest[0])
-            return default._replace(assumed=every((default.assumed, (name.value,))))
-        return unknown(name.value, f"argument `{name.value}` has no value")
+            return default._replace(assumed=every((default.assumed, (shown,))))
+        reason = "argument `{}` has no value" if is_argument else "the environment variable `{}` is not known"
+        return unknown(shown, reason.format(name.value))
 
-    def fill_env(self, piece: ValuePart) -> LaunchText:
-        name, rest = self.named(piece)
-        if name.value is None:
-            return unknown(name.shown, *name.reasons)
-        text = self.scope.environment.get(name.value)
-        if text is not None:
-            return text
-        if rest:
-            default = self.text(rest[0])
-            return default._replace(assumed=every((default.assumed, (f"${name.value}",))))
-        return unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
+    fill_env = fill_arg
 
     def fill_find(self, piece: ValuePart) -> LaunchText:
         name, _ = self.named(piece)
@@ -236,10 +230,9 @@ class Filling:
         return LaunchText(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
 
     def fill_command(self, piece: ValuePart) -> LaunchText:
-        return unknown(show((piece,)), "it is the output of a command")
+        return unknown(show((piece,)), f"it is {OF_RUNNING[piece.kind]}")
 
-    def fill_content(self, piece: ValuePart) -> LaunchText:
-        return unknown(show((piece,)), "it is the content of a file")
+    fill_content = fill_command
 
     def fill_join(self, piece: ValuePart) -> LaunchText:
         texts: list[LaunchText] = []
@@ -254,19 +247,15 @@ class Filling:
                 for t in texts[:-1]]  # fmt: skip
         return together([*done, texts[-1]], "/")
 
-    def fill_equals(self, piece: ValuePart) -> LaunchText:
-        left, right = (self.text(part) for part in piece.parts[:2])
-        both = together((left, right))
-        if both.value is None:
-            return both._replace(shown=show((piece,)))
-        return known(flag(left.value == right.value), both.assumed)
-
     def fill_in(self, piece: ValuePart) -> LaunchText:
-        texts = [self.text(part) for part in piece.parts]
+        """`in` and `equals`: whether the first is one of the others."""
+        texts = [self.text(part) for part in (piece.parts[:2] if piece.kind == "equals" else piece.parts)]
         both = together(texts)
         if both.value is None:
             return both._replace(shown=show((piece,)))
         return known(flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
+
+    fill_equals = fill_in
 
     def fill_not(self, piece: ValuePart) -> LaunchText:
         text = self.text(piece.parts[0]) if piece.parts else known("")
@@ -339,31 +328,28 @@ class Filling:
             return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
         used: list[tuple[str, ...]] = [expression.assumed]
 
-        def argument(name: str) -> Any:
-            text = self.fill_arg(ValuePart("arg", name))
-            if text.value is None:
-                raise CannotTell(*text.reasons)
-            used.append(text.assumed)
-            return ros1_value(text.value)
-
-        def variable(name: str, *default: str) -> str:
-            text = self.fill_env(ValuePart("env", name, tuple(literal(d) for d in default)))
+        def told(kind: str, name: str, *default: str) -> str:
+            text = self.fill_arg(ValuePart(kind, name, tuple(map(literal, default))))
             if text.value is None:
                 raise CannotTell(*text.reasons)
             used.append(text.assumed)
             return text.value
 
+        def argument(name: str) -> Any:
+            return ros1_value(told("arg", name))
+
         functions: dict[str, Any] = {}
-        names: Any = {"True": True, "False": False, "None": None, "pi": math.pi}
+        names: dict[str, Any] = {"pi": math.pi}
         if piece.text == "roslaunch":
             functions = {
                 "arg": argument,
-                "env": variable,
-                "optenv": lambda name, default="": variable(name, default),
+                "env": partial(told, "env"),
+                "optenv": lambda name, default="": told("env", name, default),
                 "find": lambda package: f"$(find {package})",
                 "dirname": lambda: self.fill_dirname(piece).value,
             }
-            names = _Arguments(self.scope.arguments, argument)
+            names |= {"true": True, "false": False}
+            names = {name: partial(argument, name) for name in self.scope.arguments} | names
         try:
             result = evaluate(expression.value, names, functions)
         except CannotTell as error:
@@ -371,21 +357,11 @@ class Filling:
         return known(str(result), every(used))
 
 
-class _Arguments(dict):
-    """The names that an expression of roslaunch sees: launch arguments, and a few constants."""
-
-    def __init__(self, arguments: Mapping[str, LaunchText], look: Any):
-        super().__init__(true=True, false=False, True_=True, pi=math.pi)
-        self.arguments = arguments
-        self.look = look
-
-    def __contains__(self, name: object) -> bool:
-        return super().__contains__(name) or name in self.arguments
-
-    def __getitem__(self, name: str) -> Any:
-        return super().__getitem__(name) if super().__contains__(name) else self.look(name)
-
-
+OF_RUNNING: dict[str, str] = {
+    **dict.fromkeys(("textfile", "binfile", "content"), "the content of a file"),
+    "command": "the output of a command",
+}
+"""What is only known when the launch runs, by the piece or attribute that asks for it."""
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
 _FILLING = methods_of(Filling, "fill_")
 # How many parts a piece needs before it can be filled in.

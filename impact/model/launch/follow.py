@@ -17,8 +17,9 @@ from ...facts.launch.actions import Action, ActionCondition, LaunchFile, literal
 from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
-from .fill import ActionScope, ChangedFiles, Filling
+from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import (
+    EMPTY,
     LaunchArgument,
     Launched,
     LaunchParameter,
@@ -83,7 +84,7 @@ class _Launch(Filling):
         self.open: list[str] = []
         self.assumed: list[str] = []
         self.after: list[str] = []
-        self.container = known("")
+        self.container = EMPTY
         self.most = self.budget = most
         self.started: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
@@ -172,8 +173,7 @@ class _Launch(Filling):
         self.scope.arguments[name] = text
 
     def name_of(self, action: Action) -> str | None:
-        text = self.told(self.text(action.get("name") or literal("")), action.line, f"name of {action.kind}")
-        return text.value
+        return self.told(self.field(action, "name"), action.line, f"name of {action.kind}").value
 
     def do_argument(self, action: Action) -> None:
         name = self.name_of(action)
@@ -197,12 +197,12 @@ class _Launch(Filling):
     def do_let(self, action: Action) -> None:
         name = self.name_of(action)
         if name is not None:
-            self.set(name, self.text(action.get("value") or literal("")))
+            self.set(name, self.field(action, "value"))
 
     def do_environment(self, action: Action) -> None:
         name = self.name_of(action)
         if name is not None:
-            self.scope.environment[name] = self.text(action.get("value") or literal(""))
+            self.scope.environment[name] = self.field(action, "value")
 
     def do_group(self, action: Action) -> None:
         scoped = action.get("scoped")
@@ -214,7 +214,7 @@ class _Launch(Filling):
         if forwarding is not None and truth_of(self.text(forwarding)) is False:
             self.scope = ActionScope({}, {}, len(self.open))
         if action.get("namespace") is not None:
-            self.scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
+            self.scope.namespace = self.inside(self.field(action, "namespace"))
         self.clear(action, self.scope.namespace)
         self.run(action.children)
         self.scope = outer
@@ -227,7 +227,7 @@ class _Launch(Filling):
         return within(base if base.value != "" else known("/"), namespace)
 
     def do_namespace(self, action: Action) -> None:
-        pushed = self.text(action.get("namespace") or literal(""))
+        pushed = self.field(action, "namespace")
         namespace = self.inside(pushed)
         if self.uncertain() and namespace.value != self.scope.namespace.value:
             namespace = unknown(
@@ -239,12 +239,12 @@ class _Launch(Filling):
         self.scope.remaps.append(self.remap(action))
 
     def remap(self, action: Action) -> Remap:
-        old = self.told(self.text(action.get("from") or literal("")), action.line, "remapping from")
-        new = self.told(self.text(action.get("to") or literal("")), action.line, "remapping to")
+        old = self.told(self.field(action, "from"), action.line, "remapping from")
+        new = self.told(self.field(action, "to"), action.line, "remapping to")
         return Remap(old, new, self.at(action.line), tuple(self.open[self.scope.open :]))
 
     def do_include(self, action: Action) -> None:
-        file = self.told(self.text(action.get("file") or literal("")), action.line, "include")
+        file = self.told(self.field(action, "file"), action.line, "include")
         if file.value is None:
             return
         place = self.place(file.value)
@@ -297,7 +297,7 @@ class _Launch(Filling):
         given."""
         scope = self.scope.inner(len(self.open))
         if action.get("namespace") is not None:
-            scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
+            scope.namespace = self.inside(self.field(action, "namespace"))
         self.clear(action, scope.namespace)
         all_ = action.get("pass-all")
         scope.arguments = dict(self.scope.arguments) if all_ is not None and truth_of(self.text(all_)) else {}
@@ -325,7 +325,7 @@ class _Launch(Filling):
 
     def do_parameter(self, action: Action) -> None:
         if self.generation == 1:
-            name = self.text(action.get("name") or literal(""))
+            name = self.field(action, "name")
             if name.value is not None and name.value[:1] == "~":
                 self.scope.private.append(action)
                 return
@@ -346,7 +346,7 @@ class _Launch(Filling):
         name = self.name_of(action)
         if name is None:
             return None
-        text = self.text(action.get("value") or literal(""))
+        text = self.field(action, "value")
         type_ = plain(action.get("type")) or ""
         value: Any = text.value
         if value is not None and type_ not in ("str", "string"):
@@ -355,7 +355,7 @@ class _Launch(Filling):
 
     def setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
-        file = self.text(action.get("file") or literal(""))
+        file = self.field(action, "file")
         at, conditions = self.at(action.line), tuple(self.open[self.scope.open :])
         if file.value is None:
             self.miss(action.line, f"parameters `{file.shown}`", *file.reasons)
@@ -380,18 +380,17 @@ class _Launch(Filling):
 
     def serve(self, action: Action, namespace: LaunchText) -> None:
         """Puts a <param> of ROS 1 on the server, below a namespace."""
-        name = self.text(action.get("name") or literal(""))
+        name = self.field(action, "name")
         if name.value is not None and name.value[:1] == "~":
             name = known(name.value[1:], name.assumed)
         full = self.told(within(namespace if namespace.value != "" else known("/"), name), action.line, "parameter")
         if full.value is None:
             return
-        given = next((key for key in ("textfile", "binfile", "command") if action.get(key) is not None), "value")
-        if given == "value":
-            text = self.text(action.get("value") or literal(""))
+        given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
+        if not given:
+            text = self.field(action, "value")
         else:
-            what = {"command": "the output of a command"}.get(given, "the content of a file")
-            text = unknown(show(action.get(given) or literal("")), f"it is {what}")
+            text = unknown(show(action.get(given) or literal("")), f"it is {OF_RUNNING[given]}")
         value = None
         if text.value is not None:
             value = ros1_value(text.value.strip(), plain(action.get("type")) or "auto")
@@ -407,7 +406,7 @@ class _Launch(Filling):
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
-        below = self.text(action.get("name") or literal(""))
+        below = self.field(action, "name")
         base = namespace if namespace.value != "" else known("/")
         if below.value is not None and below.value[:1] == "~":
             below = known(below.value[1:].lstrip("/"), below.assumed)
@@ -438,7 +437,7 @@ class _Launch(Filling):
         if self.generation == 1:
             self.node1(action)
         else:
-            self.node2(action, known(""))
+            self.node2(action, EMPTY)
 
     do_lifecycle = do_test = do_container = do_node
 
@@ -479,24 +478,14 @@ class _Launch(Filling):
         return self.text(action.get(key) or literal(""))
 
     def begin(self, action: Action, kind: str, **fields: Any) -> Started:
-        """Notes that an action starts something. fields: those of Started that are not empty."""
-        empty = known("")
-        texts: dict[str, Any] = {key: fields.get(key, empty) for key in _TEXTS}
-        lists: dict[str, Any] = {key: tuple(fields.get(key, ())) for key in ("remaps", "settings", "arguments")}
+        """Notes that an action starts something. fields: those of Started that are not empty, lists as tuples."""
         started = Started(
-            kind=kind,
-            generation=self.generation,
-            **texts,
-            **lists,
-            conditions=tuple(self.open),
-            assumed=every([tuple(self.assumed)]),
-            after=tuple(self.after),
-            at=self.at(action.line),
-            chain=tuple(self.chain),
-        )
+            kind, self.generation, self.at(action.line), tuple(self.chain), tuple(self.open),
+            every([tuple(self.assumed)]), tuple(self.after), **fields,
+        )  # fmt: skip
         self.started.append(started)
-        for key, text in texts.items():
-            self.told(text, action.line, f"{key} of {kind}")
+        for key in _TEXTS:
+            self.told(getattr(started, key), action.line, f"{key} of {kind}")
         return started
 
     def ros_arguments(
@@ -559,7 +548,7 @@ class _Launch(Filling):
 
     def do_process(self, action: Action) -> None:
         words = tuple(self.text(value) for value in action.all("command"))
-        package = executable = known("")
+        package = executable = EMPTY
         rest = words
         if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
             package, executable, rest = words[2], words[3], words[4:]
@@ -574,10 +563,10 @@ class _Launch(Filling):
             "process",
             package=package,
             executable=executable,
-            name=name or known(""),
-            namespace=namespace or known(""),
-            remaps=remaps,
-            settings=settings,
+            name=name or EMPTY,
+            namespace=namespace or EMPTY,
+            remaps=tuple(remaps),
+            settings=tuple(settings),
             arguments=words,
         )
 
@@ -626,7 +615,7 @@ class _Launch(Filling):
                     self.put(f"{full.value}/{old[1:]}", ros1_value(new), known(new, text.assumed), action.line)
             else:
                 remaps.append(Remap(known(old), known(new, text.assumed), self.at(action.line)))
-        kind, plugin, container = ("test" if action.kind == "test" else "node"), known(""), known("")
+        kind, plugin, container = ("test" if action.kind == "test" else "node"), EMPTY, EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
             if command == "manager":
@@ -645,8 +634,8 @@ class _Launch(Filling):
             container=container,
             name=name,
             namespace=namespace,
-            remaps=remaps,
-            arguments=words,
+            remaps=tuple(remaps),
+            arguments=tuple(words),
         )
 
     def split(self, text: LaunchText) -> list[LaunchText]:

@@ -10,6 +10,8 @@ from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..flow.names import canonical, joined
 from .text import LaunchText, known, within
 
+EMPTY = known("")
+
 
 class LaunchSources(Protocol):
     """Where launch and parameter files come from. package and path: as in `$(find package)/path`, the path normal and
@@ -76,20 +78,20 @@ class Started(NamedTuple):
 
     kind: str
     generation: int
-    package: LaunchText
-    executable: LaunchText
-    plugin: LaunchText
-    container: LaunchText
-    name: LaunchText
-    namespace: LaunchText
-    remaps: tuple[Remap, ...]
-    settings: tuple[LaunchParameter | SettingFile, ...]
-    arguments: tuple[LaunchText, ...]
+    at: ShareLine
+    chain: tuple[ShareLine, ...]
     conditions: tuple[str, ...]
     assumed: tuple[str, ...]
     after: tuple[str, ...]
-    at: ShareLine
-    chain: tuple[ShareLine, ...]
+    package: LaunchText = EMPTY
+    executable: LaunchText = EMPTY
+    plugin: LaunchText = EMPTY
+    container: LaunchText = EMPTY
+    name: LaunchText = EMPTY
+    namespace: LaunchText = EMPTY
+    remaps: tuple[Remap, ...] = ()
+    settings: tuple[LaunchParameter | SettingFile, ...] = ()
+    arguments: tuple[LaunchText, ...] = ()
 
     @property
     def full_name(self) -> LaunchText:

@@ -54,8 +54,7 @@ def within(namespace: LaunchText, name: LaunchText) -> LaunchText:
     if namespace.value is None or name.value is None:
         both = together((namespace, name), "/")
         return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return LaunchText(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
-                every((namespace.assumed, name.assumed)))  # fmt: skip
+    return known(joined(namespace.value, name.value), every((namespace.assumed, name.assumed)))
 
 
 _MOST = 200
@@ -138,7 +137,7 @@ def text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
 
 def evaluate(expression: str, names: Mapping[str, Any], functions: Mapping[str, Any]) -> Any:
     """The value of a small Python expression: constants, comparisons, sums, methods of str, and the names and functions
-    given. Raises CannotTell for anything else."""
+    given. Raises CannotTell for anything else. names: to their values, or what gives these when they are asked for."""
     if len(expression) > 10_000:
         raise CannotTell("is too long")
     try:
@@ -163,9 +162,7 @@ class _Evaluator:
         if isinstance(node, ast.Name):
             if node.id in self.names:
                 found = self.names[node.id]
-                if isinstance(found, CannotTell):
-                    raise found
-                return found
+                return found() if callable(found) else found
             raise CannotTell(f"`{node.id}` is no name an expression may use")
         if isinstance(node, ast.BoolOp):
             result: Any = None

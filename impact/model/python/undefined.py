@@ -207,8 +207,7 @@ class _Modules:
             return False
         for roots in self._roots.values():
             for root in roots:
-                stem = f"{root}/{rest.replace('.', '/')}"
-                file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+                file = self._file_at(f"{root}/{rest.replace('.', '/')}")
                 if file is None or any(other.module == item.module for other in file.imports):
                     continue
                 if any(self._is_of_another(other, root) for other in self._imports_of.get(head, ())):
@@ -229,9 +228,11 @@ class _Modules:
 
     def _is_of_another(self, item: Import, root: str) -> bool:
         """Whether what an import asks of another package is not at the same place below a root."""
-        stem = f"{root}/{item.module.partition('.')[2].replace('.', '/')}"
-        file = next(filter(None, map(self._files.get, (f"{stem}.py", f"{stem}/__init__.py"))), None)
+        file = self._file_at(f"{root}/{item.module.partition('.')[2].replace('.', '/')}")
         return file is None or not all(f" {name} " in file.bound for name in item.names)
+
+    def _file_at(self, stem: str) -> PythonFile | None:
+        return self._files.get(f"{stem}.py") or self._files.get(f"{stem}/__init__.py")
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file

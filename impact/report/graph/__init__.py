@@ -4,15 +4,11 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from msgspec import structs
-
 from ...model.flow.graph import Graph
-from ...model.flow.select import NothingSelected, Selection, selected
+from ...model.flow.select import NothingSelected, Selection, part_of, selected
 from ..style import Style
 from .text import WIDE
 from .text import render as as_text
-
-FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
 
 
 def draw(
@@ -20,7 +16,7 @@ def draw(
     topics: Sequence[str] = (), packages: Sequence[str] = (), around: str = "", hops: int = 2,
     everything: bool = False, style: Style = WIDE,
 ) -> str:  # fmt: skip
-    """A graph in one of FORMATS. base: what it is compared with: then what is new, gone and changed is marked.
+    """A graph in the format of one of the modules here. base: what it is compared with; what differs is then marked.
 
     nodes to everything: as for selected(). style: how text is written. Raises NothingSelected.
     """
@@ -28,10 +24,7 @@ def draw(
     asked: dict[str, Any] = {
         "nodes": nodes, "topics": topics, "packages": packages, "around": around, "hops": hops, "everything": keep,
     }  # fmt: skip
-    if base is None:
-        part, before = selected(graph, **asked), None
-    else:
-        part, before = _compared(graph, base, asked)
+    part, before = (selected(graph, **asked), None) if base is None else _compared(graph, base, asked)
     if format == "text":
         return as_text(part, before, everything, style)
     return import_module(f".{format}", __name__).render(part, before)
@@ -52,17 +45,5 @@ def _compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selecti
     nodes = {node.id for part in parts for node in part.graph.nodes}
     nodes |= {endpoint.node for part in parts for endpoint in part.graph.endpoints}
     names = {each.topic for part in parts for each in (*part.graph.endpoints, *part.graph.publishes)}
-    return Selection(_within(graph, nodes, names), max(part.hidden for part in parts), parts[0].asked), _within(
-        base, nodes, names
-    )
-
-
-def _within(graph: Graph, nodes: set[str], names: set[str]) -> Graph:
-    return structs.replace(
-        graph,
-        nodes=tuple(node for node in graph.nodes if node.id in nodes),
-        endpoints=tuple(e for e in graph.endpoints if e.node in nodes and e.topic in names),
-        publishes=tuple(p for p in graph.publishes if p.node in nodes and p.topic in names),
-        timers=tuple(t for t in graph.timers if t.node in nodes),
-        parameters=tuple(p for p in graph.parameters if p.node in nodes),
-    )
+    now, before = (part_of(each, nodes, names) for each in (graph, base))
+    return Selection(now, max(part.hidden for part in parts), parts[0].asked), before
