@@ -11,7 +11,7 @@ what the very release has.
 from __future__ import annotations
 
 import hashlib
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import msgspec
@@ -368,6 +368,7 @@ def _new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | 
     return reached(row.new_since, version, target) if row.new_since else None
 
 
+@lru_cache(maxsize=10_000)
 def reached(bound: str, version: str, target: DistroTarget) -> bool:
     """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
     if not bound:

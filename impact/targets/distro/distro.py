@@ -13,6 +13,7 @@ import operator
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -343,40 +344,33 @@ class DistroTarget:
             return None
         return tuple(found for condition, found in _read_entries(manifest[0]) if not condition or self.holds(condition))
 
-    def _manifest(self, package: str) -> tuple[str, str] | None:
-        version = self.version(package)
-        if version is None:
-            return None
+    def _manifests(self, package: str) -> list[tuple[list[int], str, str]]:
+        """What is known of the manifests of a package in this distro, by their versions, oldest first: dependencies as
+        they are stored, and the build type."""
         rows = self._data.rows(
             "SELECT m.version, d.entries, m.build_type FROM manifest m JOIN package p ON p.id = m.package"
             " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
             (package, self._id),
         )
-        if not rows:
+        keyed = [(version_key(known), entries or "", build or "") for known, entries, build in rows]
+        return sorted(keyed, key=itemgetter(0))
+
+    def _manifest(self, package: str) -> tuple[str, str] | None:
+        version = self.version(package)
+        known = self._manifests(package) if version is not None else []
+        if version is None or not known:
             return None
         wanted = version_key(version)
-        keyed = [(version_key(known), entries, build) for known, entries, build in rows]
-        keyed.sort(key=lambda row: row[0])
-        chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
-        return chosen[1] or "", chosen[2] or ""
+        _, entries, build = next((row for row in reversed(known) if row[0] <= wanted), known[0])
+        return entries, build
 
     def later_dependencies(self, package: str) -> frozenset[str]:
         """Names that come along with the next later version whose manifest is known here, where this very version's is
         not known: what dependencies() may lack."""
         version = self.version(package)
-        if version is None:
-            return frozenset()
-        known = {
-            tuple(version_key(of)): entries or ""
-            for of, entries in self._data.rows(
-                "SELECT m.version, d.entries FROM manifest m JOIN package p ON p.id = m.package"
-                " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
-                (package, self._id),
-            )
-        }
-        wanted = tuple(version_key(version))
-        later = min((key for key in known if key > wanted), default=None)
-        return frozenset() if wanted in known or later is None else _come_along(known[later])
+        wanted = version_key(version or "")
+        known = [(of, entries) for of, entries, _ in self._manifests(package) if of >= wanted] if version else []
+        return _come_along(known[0][1]) if known and known[0][0] != wanted else frozenset()
 
     def build_type(self, package: str) -> str:
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
@@ -459,6 +453,7 @@ class DistroTarget:
         near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
         return [name for name in near if name != self.distro]
 
+    @cached_method
     def _distros_with(self, package: str) -> frozenset[str]:
         """Distros of this generation that have ever released a package."""
         if not self.ever_released(package):
@@ -512,14 +507,10 @@ class DistroTarget:
             if system in self._rules.get(key, ()):
                 return resolve_rule(self._rules[key][system], os_name, release)
         # Some keys stand for every operating system under the name `*`.
-        for system in (os_name, "*"):
-            row = self._data.row(
-                "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
-                (key, system, ts),
-            )
-            if row and row[0] is not None:
-                return resolve_rule(decode_rule(row[0]), os_name, release)
-        return None
+        asked = "SELECT os, rule FROM rule WHERE key = ? AND os IN (?, '*') AND ts <= ? ORDER BY ts"
+        newest = dict(self._data.rows(asked, (key, os_name, ts)))
+        rule = next((newest[one] for one in (os_name, "*") if newest.get(one) is not None), None)
+        return resolve_rule(decode_rule(rule), os_name, release) if rule is not None else None
 
     def known_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""

@@ -224,9 +224,8 @@ class Providers:
 
         Only releases whose source tree was read count; known_releases tells which.
         """
-        for (number,) in self._rows("SELECT pattern FROM ros_header WHERE path = ? AND package = ?", header, package):
-            return self._pattern(number)
-        return ()
+        number = self._headers_of(package).get(header)
+        return self._pattern(number) if number is not None else ()
 
     @cached_method
     def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
@@ -244,12 +243,13 @@ class Providers:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
         if not _within(self.known_releases(package), distro, version):
             return None
-        return any(_within(self._pattern(number), distro, version) for number in self._patterns(package))
+        patterns = {*self._headers_of(package).values()}
+        return any(_within(self._pattern(number), distro, version) for number in patterns)
 
     @cached_method
-    def _patterns(self, package: str) -> list[int]:
-        rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
-        return [number for (number,) in rows]
+    def _headers_of(self, package: str) -> dict[str, int]:
+        """The headers that a ROS package ever had, with their patterns."""
+        return dict(self._rows("SELECT path, pattern FROM ros_header WHERE package = ?", package))
 
     def _vendors(self, key: str) -> list[Provider]:
         return self._facts("vendor", key)

@@ -3,6 +3,7 @@ many packages reads little."""
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 
 import msgspec
 import zstandard
@@ -36,7 +37,7 @@ class IncludesRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
     announced: tuple[int, ...] = ()
 
 
-class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class Included(msgspec.Struct, frozen=True, array_like=True, dict=True):
     """versions: of one ROS generation, oldest first. approximate: those that a branch stood for. headers: by the path
     that dependants write; those that are generated are not among them."""
 
@@ -66,11 +67,17 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
     def _row(self, header: str, version: str) -> IncludesRow | None:
-        rows = self.headers.get(header)
-        if not rows or version not in self.versions:
+        place = self._places.get(version)
+        if place is None:
             return None
-        place = self.versions.index(version)
-        return next((row for row in rows if there(row.spans, place)), None)
+        for row in self.headers.get(header, ()):
+            if there(row.spans, place):
+                return row
+        return None
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {version: place for place, version in enumerate(self.versions)}
 
     def answer(self, include: Include, header: str, version: str) -> str:
         """The path that dependants would write for what a header includes, see path_of()."""
