@@ -33,7 +33,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format,
 
     def answer(store) -> str:
         from ...databuild.surface.clones import Clone
-        from ..targets.surface.compare import RepositorySurfaces, compare, compare_states
+        from ...databuild.surface.compare import RepositorySurfaces, compare, compare_states
 
         if os.path.isdir(what) and repos is None:
             clone = Clone(Path(what))

@@ -5,12 +5,12 @@ import textwrap
 
 import pytest
 from rosimpact.databuild.surface.clones import Clone, Clones, VersionError
+from rosimpact.databuild.surface.compare import RepositorySurfaces, compare, compare_states
 from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.changes import PARAMETER
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare, compare_states
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>

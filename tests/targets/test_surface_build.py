@@ -4,12 +4,12 @@ import textwrap
 
 import pytest
 from rosimpact.databuild.surface.build import KINDS, surface_of
+from rosimpact.databuild.surface.compare_build import compare
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.kinds import kind_of
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.build import compare
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.2.3</version><description>d</description>

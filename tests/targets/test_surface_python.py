@@ -3,13 +3,14 @@
 import textwrap
 
 import pytest
+from rosimpact.databuild.surface.compare_python import broken_by, compare
 from rosimpact.databuild.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, broken_by, compare, signature
+from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, signature
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>

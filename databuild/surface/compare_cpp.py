@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 
 import msgspec
 
-from ...facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
+from ...impact.facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
 
 
 class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -3,8 +3,8 @@
 import posixpath
 from collections.abc import Callable, Iterable, Iterator
 
-from .python import PythonChange
-from .surface import BuildSurface
+from ...impact.targets.surface.surface import BuildSurface
+from .compare_python import PythonChange
 
 
 def compare(old: BuildSurface, new: BuildSurface) -> tuple[PythonChange, ...]:

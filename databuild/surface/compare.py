@@ -8,18 +8,16 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ....edges.memory import cached_method
-from ....edges.reach import walk
-from ...facts.interface import PRIMITIVES, Field, Section, full_name
-from ...facts.parameters import mentions
-from ...facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
-from . import build as surface_build
-from . import diff as surface_diff
-from . import python as surface_python
-from .changes import PARAMETER
-from .fields import snake
-from .python import UNKNOWN, SurfaceNames
-from .surface import BuildSurface, PythonSurface, Surface
+from ...edges.memory import cached_method
+from ...edges.reach import walk
+from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
+from ...impact.facts.parameters import mentions
+from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
+from ...impact.targets.surface.changes import PARAMETER, VersionChange
+from ...impact.targets.surface.fields import snake
+from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
+from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
+from . import compare_build, compare_cpp, compare_python
 
 
 class EntityPlace(NamedTuple):
@@ -139,34 +137,6 @@ class RepositorySurfaces:
                 yield "::".join([*parts[:length], space.removeprefix("::")])
 
 
-class VersionChange(msgspec.Struct, frozen=True, gc=False):
-    """One difference between two versions of a package.
-
-    side: `c++`, `python`, `message` or `build` (CMake, headers, programs, plugins, launch files).
-    kind: `removed`, `added`, `moved`, `deprecated`, `signature`, `default`, `value`, `type`, `base`, `access`,
-    `deleted`, `pure`, `final`, `kind`, `wire` (both versions of a message do not talk to each other).
-    what: of which sort the thing is (`class`, `method`, `header`, `field`, `target`, `executable` ...).
-    name: as users write it. old, now: declarations. aspects: in what signatures differ.
-    instead: what to use now, where that is known or can be guessed. moved_to: the package that has it now.
-    where: the header or module that has or had it.
-    breaks: code that used the old one may no longer build or run. sure: from 0 to 1.
-    """
-
-    package: str
-    side: str
-    kind: str
-    what: str
-    name: str
-    old: str = ""
-    now: str = ""
-    aspects: tuple[str, ...] = ()
-    instead: str = ""
-    moved_to: str = ""
-    where: str = ""
-    breaks: bool = True
-    sure: float = 1.0
-
-
 OPEN = 0.5
 """How sure a change is that hangs on something outside of the repository, or that is not understood."""
 CONDITIONAL = 0.7
@@ -180,7 +150,7 @@ def compare(
     to another package, or into a base class there, is not taken for gone."""
     before = before or RepositorySurfaces({old.package: old})
     after = after or RepositorySurfaces({new.package: new})
-    changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
+    changes = compare_cpp.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
     found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
     found += _parameters_changed(old, new, before, after)
@@ -243,7 +213,7 @@ def _request(stem: str, surface: Surface) -> bool:
 
 
 def _headers_changed(
-    old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[surface_diff.CppChange]
+    old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[compare_cpp.CppChange]
 ) -> Iterator[VersionChange]:
     had, has = _all_headers(old), _all_headers(new)
     open_ended = _open_ended(old, new)
@@ -299,7 +269,7 @@ def _cpp(
     new: Surface,
     before: RepositorySurfaces,
     after: RepositorySurfaces,
-    changes: Sequence[surface_diff.CppChange],
+    changes: Sequence[compare_cpp.CppChange],
 ) -> Iterator[VersionChange]:
     hints = {change.name: change for change in changes if change.kind == "renamed"}
     broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
@@ -351,7 +321,7 @@ def _cpp(
 
 def _gone(
     told: VersionChange,
-    change: surface_diff.CppChange,
+    change: compare_cpp.CppChange,
     old: Surface,
     new: Surface,
     before: RepositorySurfaces,
@@ -389,7 +359,7 @@ def _gone(
         found, strange = after.inherited(owner, last)
         if found:
             # A method may be there with other parameters; those of the base count then.
-            if one.kind not in FUNCTIONS or "override" in one.traits or surface_diff.still_callable(one, found):
+            if one.kind not in FUNCTIONS or "override" in one.traits or compare_cpp.still_callable(one, found):
                 return None
             return msgspec.structs.replace(told, kind="signature", now=declared(found[0]), aspects=("types",))
         if strange:
@@ -402,7 +372,7 @@ def _gone(
 
 
 def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
-    for change in surface_python.compare(old.python, new.python):
+    for change in compare_python.compare(old.python, new.python):
         sure = 1.0 if change.sure else OPEN
         instead = change.now if change.kind == "moved" else ""
         told = VersionChange(
@@ -515,7 +485,7 @@ def _type(field: Field, package: str) -> str:
 
 
 def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
-    for change in surface_build.compare(old.build, new.build):
+    for change in compare_build.compare(old.build, new.build):
         if change.what == "header":
             continue  # told with what is in them
         instead, moved_to = change.now if change.kind == "moved" else "", ""
