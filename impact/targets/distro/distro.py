@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import datetime
 import functools
-import operator
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
@@ -21,6 +20,8 @@ import msgspec
 from ....edges.console import UserError
 from ....edges.memory import cached_method
 from ....edges.reach import walk
+from ...conditions import Environment
+from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
@@ -468,15 +469,8 @@ class DistroTarget:
     @cached_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
-        return condition_holds(condition, self._variables)
-
-    @property
-    def _variables(self) -> dict[str, str]:
-        return {
-            "ROS_VERSION": str(self.ros),
-            "ROS_DISTRO": self.distro,
-            "ROS_PYTHON_VERSION": str(self.python_major),
-        }
+        here = Environment(self.distro, str(self.ros), (self.python_major, 0))
+        return bool(condition) and evaluate(condition, here) is True
 
     def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
         """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
@@ -662,58 +656,10 @@ class DistroTarget:
         return self._changes
 
 
-_COMPARISON = re.compile(r"""\s*\$(\w+)\s*(==|!=|<=|>=|<|>)\s*(?:([\w-]+)|"([^"]*)"|'([^']*)')\s*$""")
-_COMPARE = {
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
-
-
-_TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
-
-
 def _come_along(entries: str) -> frozenset[str]:
     """The names among the stored entries of a manifest that are installed along with it, conditions aside."""
     fields = (line.split("\t") for line in entries.splitlines())
     return frozenset(name for name, letters, *_ in fields if not _COMES_ALONG.isdisjoint(letters))
-
-
-def _compared(term: str, variables: Mapping[str, str]) -> bool | None:
-    """One comparison, None when it is none of a variable with a text."""
-    term = term.strip()
-    simple = _COMPARISON.match(term)
-    if simple is None:
-        turned = _TURNED.match(term)
-        if turned is None:
-            return None
-        return bool(_COMPARE[turned[2]](turned[1], variables.get(turned[3], "")))
-    name, compare, *values = simple.groups()
-    return bool(_COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None)))
-
-
-def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
-    """A manifest condition by REP 149: texts are compared, an unset variable is empty.
-
-    Comparisons in a row, as most conditions are, are done here: catkin_pkg's parser costs 60 ms to load.
-    """
-    if "(" not in condition:
-        # `and` binds closer than `or`.
-        terms = [
-            [_compared(term, variables) for term in re.split(r"\band\b", part)]
-            for part in re.split(r"\bor\b", condition)
-        ]
-        if not any(term is None for part in terms for term in part):
-            return any(all(part) for part in terms)
-    from catkin_pkg.condition import evaluate_condition
-
-    try:
-        return bool(evaluate_condition(condition, variables))
-    except Exception:
-        return False
 
 
 @functools.cache
