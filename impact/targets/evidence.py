@@ -11,7 +11,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from .changes import DISTROS, ChangeRow, all_rows, all_uses, reached, version_of
-from .distro.known import known_distros, releases
+from .distro.known import release_day, releases
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
@@ -236,7 +236,7 @@ def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, p
 
 
 def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
-    released = _release_days().get(target.distro, "")
+    released = release_day(target.distro)
     if evidence.library:
         return released if holds and target.came_with_release(evidence.package) else ""
     if target.overridden(evidence.package):
@@ -259,8 +259,3 @@ def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Pro
             # Which of the versions before brought it, is not known; before the release nobody cares.
             since = max(day, begin) if not always and (not unknown or day <= begin) else "?"
     return since.rstrip("?")
-
-
-@cache
-def _release_days() -> dict[str, str]:
-    return {known.name: known.released for known in known_distros()}

@@ -15,8 +15,6 @@ from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import msgspec
-
 from ....edges.console import UserError
 from ....edges.memory import cached_method
 from ....edges.reach import walk
@@ -28,7 +26,7 @@ from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
 from ..version import number_of
 from .conda import CHANNELS, libraries_of
-from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
+from .known import _upstream, day_of, end_of_day, find_distro, known_distros, systems_of_rosdep
 from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
 
 if TYPE_CHECKING:
@@ -44,6 +42,16 @@ class Library(NamedTuple):
 
     version: str
     source: str
+
+
+class _Recipe(NamedTuple):
+    """What a target was asked for with."""
+
+    distro: str
+    date: str | None
+    platform: str | None
+    versions: dict[str, str]
+    name: str | None
 
 
 class _Released(NamedTuple):
@@ -125,19 +133,17 @@ class DistroTarget:
     ):
         self._data = data or snapshots.default()
         self._neighbours: dict[str, DistroTarget] = {}
-        self._asked = (distro, date, platform, dict(versions or {}), name)
+        self._asked = _Recipe(distro, date, platform, dict(versions or {}), name)
         self._rules = dict(rules or {})
-        row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
-        if row is None:
+        known = find_distro(distro, self._data)
+        if known is None:
             raise TargetError(_unknown_distro(distro, self._data))
-        self._id, self.ros, self.python_major = row
+        self._id, self.ros, self.python_major = known.number, known.ros, known.python
         self.distro = distro
         self.data_date = self._data.date
         self._overrides = {key: str(value) for key, value in (versions or {}).items()}
         self._own_libraries = {library_name(key): value for key, value in self._overrides.items()}
-        self._facts = _facts(distro, self._data)
-        self.end_of_life = (self._facts.end_of_life or "") if self._facts else ""
-        self.lts = bool(self._facts and self._facts.lts)
+        self._facts, self.end_of_life, self.lts = known.facts, known.end_of_life, known.lts
         notes: list[str] = []
         self.date = self._place_date(date, notes)
         self._cut, self.approximate = self._availability()
@@ -149,13 +155,12 @@ class DistroTarget:
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
-        distro, date, platform, versions, name = self._asked
-        return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
+        return DistroTarget, (*self._asked, None, self._rules)
 
     def identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
-        return repr((self._asked, *known, snapshots.data_stamp()))
+        return repr((tuple(self._asked), *known, snapshots.data_stamp()))
 
     def changed(
         self,
@@ -165,22 +170,16 @@ class DistroTarget:
         name: str | None = None,
     ) -> DistroTarget:
         """This target with another date, platform or name, and further versions on top of its own."""
-        distro, old_date, old_platform, old_versions, old_name = self._asked
-        return DistroTarget(
-            distro,
-            date or old_date,
-            platform or old_platform,
-            {**old_versions, **(versions or {})},
-            name or old_name,
-            self._data,
-            self._rules,
-        )
+        own = self._asked
+        mixed = {**own.versions, **(versions or {})}
+        recipe = _Recipe(own.distro, date or own.date, platform or own.platform, mixed, name or own.name)
+        return DistroTarget(*recipe, self._data, self._rules)
 
     def surrounded(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
         """This target with packages and rosdep rules that its machine has besides the public ones. A version that the
         target itself gives for a package stays."""
-        distro, date, platform, own, name = self._asked
-        return DistroTarget(distro, date, platform, {**versions, **own}, name, self._data, {**rules, **self._rules})
+        recipe = self._asked._replace(versions={**versions, **self._asked.versions})
+        return DistroTarget(*recipe, self._data, {**rules, **self._rules})
 
     def _place_date(self, date: str | None, notes: list[str]) -> str:
         if date is None:
@@ -664,18 +663,12 @@ def _come_along(entries: str) -> frozenset[str]:
 
 @functools.cache
 def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
-    known = known_distros(data)
-    here = next((k for k in known if k.name == distro), None)
+    here = find_distro(distro, data)
     if here is None:
         return None
-    lasting = [k for k in known if k.ros == here.ros and k.lts]
+    lasting = [k for k in known_distros(data) if k.ros == here.ros and k.lts]
     last = lasting[-1] if lasting else None
     return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
-
-
-def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
-    row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
-    return msgspec.json.decode(row[0], type=DistroFacts) if row else None
 
 
 def _unknown_distro(name: str, data: Snapshot) -> str:

@@ -169,11 +169,3 @@ def _names_of(gcc: int, standard: int) -> dict[str, int]:
     years = {2000 + int(number): table for number, table in standards.items()}
     told = years[max((year for year in years if year <= standard), default=min(years))]
     return {header: int(bits, 16) for header, bits in told.items()}
-
-
-def reaches(headers: frozenset[str], name: str, gcc: int) -> bool | None:
-    """Whether any of these standard headers brings the definition of a name in a GCC; None for an unknown name."""
-    wanted = DEFINED_IN.get(name)
-    if wanted is None:
-        return None
-    return any(not brought_by(header, gcc).isdisjoint(wanted) for header in headers)
