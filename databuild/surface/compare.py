@@ -2,7 +2,7 @@
 
 import posixpath
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from ...edges.reach import walk
 from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
 from ...impact.facts.parameters import mentions
 from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
-from ...impact.targets.surface.changes import PARAMETER, VersionChange
+from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
 from ...impact.targets.surface.fields import snake
 from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
@@ -137,8 +137,6 @@ class RepositorySurfaces:
                 yield "::".join([*parts[:length], space.removeprefix("::")])
 
 
-OPEN = 0.5
-"""How sure a change is that hangs on something outside of the repository, or that is not understood."""
 CONDITIONAL = 0.7
 """How sure a change is of something that stands under a condition of the preprocessor."""
 
@@ -373,27 +371,13 @@ def _gone(
 
 def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     for change in compare_python.compare(old.python, new.python):
-        sure = 1.0 if change.sure else OPEN
-        instead = change.now if change.kind == "moved" else ""
-        told = VersionChange(
-            old.package,
-            "python",
-            change.kind,
-            change.what,
-            change.name,
-            change.old if change.kind != "moved" else "",
-            "" if instead else change.now,
-            instead=instead,
-            breaks=change.breaks,
-            sure=sure,
-        )
-        if change.kind == "removed":
-            home = _python_home(change.name, new, after)
-            if home == "?":
-                continue
-            if home:
-                told = msgspec.structs.replace(told, kind="moved", moved_to=home, breaks=not _runs_with(new, home))
-        yield told
+        home = _python_home(change.name, new, after) if change.kind == "removed" else ""
+        if home == "?":
+            continue
+        if home:
+            breaks = home not in new.runs_with  # who installs the package gets that one too
+            change = msgspec.structs.replace(change, kind="moved", moved_to=home, breaks=breaks)
+        yield change
 
 
 def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
@@ -408,11 +392,6 @@ def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
         if found is not None:
             return package
     return ""
-
-
-def _runs_with(new: Surface, package: str) -> bool:
-    """Whether who installs a package gets another one too."""
-    return package in new.runs_with
 
 
 def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
@@ -488,33 +467,13 @@ def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[Ve
     for change in compare_build.compare(old.build, new.build):
         if change.what == "header":
             continue  # told with what is in them
-        instead, moved_to = change.now if change.kind == "moved" else "", ""
-        kind = change.kind
-        if kind in ("removed", "moved") and change.what in ("executable", "plugin", "launch file", "target"):
-            homes = [
-                p for p, s in after.surfaces.items() if p != new.package and change.name in _things(change.what, s)
-            ]
-            if len(homes) == 1 and not instead:
-                kind, moved_to = "moved", homes[0]
-        now = "" if instead else change.now
-        breaks = change.breaks and not (moved_to and change.what == "plugin")
-        # What a package needs for itself is no promise; that it is passed on is.
-        sure = 1.0 if change.sure else OPEN
-        yield VersionChange(
-            old.package,
-            "build",
-            kind,
-            change.what,
-            change.name,
-            change.old,
-            now,
-            (),
-            instead,
-            moved_to,
-            "",
-            breaks,
-            sure,
-        )
+        if change.kind == "removed" and change.what in _MOVABLE:
+            things = compare_build.THINGS[change.what]
+            homes = [p for p, s in after.surfaces.items() if p != new.package and change.name in things(s.build)]
+            if len(homes) == 1:
+                breaks = change.breaks and change.what != "plugin"
+                change = msgspec.structs.replace(change, kind="moved", moved_to=homes[0], breaks=breaks)
+        yield change
 
 
 def _parameters_changed(
@@ -538,12 +497,4 @@ def _parameters_changed(
             yield change("added", name, "", default, OPEN if earlier is not None and mentions(earlier, name) else 1.0)
 
 
-def _things(what: str, surface: Surface) -> set[str]:
-    build = surface.build
-    parts: dict[str, Callable[[], Iterable[str]]] = {
-        "executable": lambda: (p.name for p in build.programs),
-        "plugin": lambda: (p.name for p in build.plugins),
-        "launch file": lambda: (f.path for f in build.launches),
-        "target": lambda: (t.name for t in build.targets),
-    }
-    return set(parts[what]())
+_MOVABLE = frozenset(("executable", "plugin", "launch file", "target"))

@@ -4,32 +4,13 @@ import re
 from collections.abc import Mapping
 from functools import cached_property
 
-import msgspec
-
 from ...impact.facts.python.surface import PythonParameter, is_private
+from ...impact.targets.surface.changes import OPEN, VersionChange
 from ...impact.targets.surface.python import UNKNOWN, PythonName, SurfaceNames, is_callable, shown, wrapped
 from ...impact.targets.surface.surface import PythonSurface
 
 
-class PythonChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A difference between two surfaces.
-
-    kind: `removed`, `moved` (now: where it can be imported instead), `added`, `signature`, `default`, `deprecated`
-    (now: the message), `kind` (a method became a property ...). name: dotted. what: of which kind the thing is
-    (`module`, `class`, `function`, `method` ...). old, now: as written. breaks: code that used the old form may fail.
-    sure: False where a condition, a decorator or a base class of another package leaves it open.
-    """
-
-    kind: str
-    name: str
-    what: str
-    old: str = ""
-    now: str = ""
-    breaks: bool = True
-    sure: bool = True
-
-
-def compare(old: PythonSurface, new: PythonSurface) -> tuple[PythonChange, ...]:
+def compare(old: PythonSurface, new: PythonSurface) -> tuple[VersionChange, ...]:
     """What changed for those who use the package from Python, sorted by name. A name of which it cannot be told whether
     it is still there is left out."""
     return _Comparison(SurfaceNames(old), SurfaceNames(new)).run()
@@ -38,10 +19,10 @@ def compare(old: PythonSurface, new: PythonSurface) -> tuple[PythonChange, ...]:
 class _Comparison:
     def __init__(self, old: SurfaceNames, new: SurfaceNames):
         self.old, self.new = old, new
-        self.changes: dict[tuple[str, str], PythonChange] = {}
+        self.changes: dict[tuple[str, str], VersionChange] = {}
         self.seen: set[str] = set()
 
-    def run(self) -> tuple[PythonChange, ...]:
+    def run(self) -> tuple[VersionChange, ...]:
         gone = self.modules()
         # The shortest way to a thing is how its members are called.
         for name, entry in sorted(self.old.offered.items(), key=lambda item: (item[0].count("."), item[0])):
@@ -60,10 +41,12 @@ class _Comparison:
 
     @cached_property
     def moved_to(self) -> set[str]:
-        return {change.now for change in self.changes.values() if change.kind == "moved"}
+        return {change.instead for change in self.changes.values() if change.kind == "moved"}
 
-    def add(self, kind: str, name: str, what: str, **more) -> None:
-        self.changes.setdefault((kind, name), PythonChange(kind, name, what, **more))
+    def add(self, kind: str, name: str, what: str, *, sure: bool = True, **more) -> None:
+        more["sure"] = 1.0 if sure else OPEN
+        change = VersionChange(self.old.surface.package, "python", kind, what, name, **more)
+        self.changes.setdefault((kind, name), change)
 
     def modules(self) -> list[str]:
         """Public modules that are gone: told once for the topmost."""
@@ -76,7 +59,7 @@ class _Comparison:
                 twins = [m for m in self.new.modules if m.rpartition(".")[2] == name.rpartition(".")[2]]
                 twins = [m for m in twins if m not in self.old.modules and self.alike_modules(name, m)]
                 if len(twins) == 1:
-                    self.add("moved", name, "module", old=name, now=twins[0])
+                    self.add("moved", name, "module", instead=twins[0])
                 else:
                     self.add("removed", name, "module", old=name)
         for name in sorted(self.new.modules):
@@ -95,7 +78,7 @@ class _Comparison:
         inside = any(name.startswith(f"{module}.") for module in gone)
         if target:
             if not inside or (("moved", name.rpartition(".")[0]) not in self.changes):
-                self.add("moved", name, entry.kind, old=shown(entry), now=target, sure=not entry.conditional)
+                self.add("moved", name, entry.kind, instead=target, sure=not entry.conditional)
         elif not inside:
             self.add("removed", name, entry.kind, old=shown(entry), sure=not entry.conditional)
 

@@ -258,7 +258,7 @@ def test_a_plain_cmake_package_with_a_configuration_of_its_own(surface):
 def test_compare(surface, old, new, expected):
     files = ["include/arm/a.hpp", "a.cpp"]
     changes = compare(surface(old, files), surface(new, files))
-    assert [(c.kind, c.what, c.name, c.now if c.sure else "unsure") for c in changes] == expected
+    assert [(c.kind, c.what, c.name, (c.now or c.instead) if c.sure == 1 else "unsure") for c in changes] == expected
 
 
 def test_launch_arguments_that_changed(surface):

@@ -74,6 +74,10 @@ class VersionChange(msgspec.Struct, frozen=True, gc=False):
     sure: float = 1.0
 
 
+OPEN = 0.5
+"""How sure a change is that hangs on something outside of the repository, or that is not understood."""
+
+
 class ComparedThing(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the comparison told of a thing, as in VersionChange, without what the line of versions tells as well. now:
     the message of a deprecation, a value or a default; declarations are in the surfaces."""
