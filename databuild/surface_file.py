@@ -24,7 +24,7 @@ from ..impact.facts.surface import Entity, HeaderSurface
 from ..impact.targets.surface import includes as surface_includes
 from ..impact.targets.surface.changes import PARAMETER, Line, unpack
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
-from ..impact.targets.surface.store import About, Stored, StoredSurfacesError, SurfaceHistory
+from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory
 
 if TYPE_CHECKING:
     from ..impact.targets.surface.surface import Surface
@@ -56,6 +56,14 @@ class Packed(NamedTuple):
     data: bytes
     changes: bytes
     includes: bytes
+
+
+class Stored(NamedTuple):
+    """One version of a package. approximate: a branch stood for its tag."""
+
+    version: str
+    approximate: bool
+    surface: Surface
 
 
 class Packer:

@@ -21,7 +21,7 @@ from ..tree.paths import is_vendored
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
 from .distro.known import KnownDistro, known_distros, systems_of_rosdep
-from .platform import CODENAMES, library_name, normal_platform
+from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, library_name, normal_platform
 from .snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -31,12 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
 
 _DPKG = ".dpkg.txt"
-_OTHER_SYSTEMS = frozenset(("conda-forge", "robostack", "macos", "windows"))
-"""Systems that ROS runs on and rosdep has no rules for."""
-_OTHER_RELEASES = frozenset(("sid", "unstable", "testing", "stable", "oldstable", "devel", "artful", "cosmic", "disco",
-                             "eoan", "groovy", "hirsute", "impish", "kinetic", "lunar", "mantic", "oracular", "plucky",
-                             "questing", "saucy", "utopic", "vivid", "wily", "yakkety", "zesty"))  # fmt: skip
-"""Releases of Debian by role, and of Ubuntu between the long-term ones. Source: releases.ubuntu.com."""
 _DOCKER = "docker:"
 _DATE = re.compile(r"\d{4}-\d\d?-\d\d?$")
 _LARGEST = 200_000
@@ -139,8 +133,8 @@ def _check_table(where: str, platform: str | None, versions: Mapping[str, str], 
     words = normal_platform(platform or "").split()
     if not words:
         return
-    systems = systems_of_rosdep(data) | _OTHER_SYSTEMS
-    releases = {name.split()[1] for name in CODENAMES.values()} | _OTHER_RELEASES
+    systems = systems_of_rosdep(data) | OTHER_SYSTEMS
+    releases = {name.split()[1] for name in CODENAMES.values()} | OTHER_RELEASES
     if words[0] not in systems:
         hint = _did_you_mean(words[0], systems | releases) or f"known systems: {', '.join(sorted(systems))}"
     elif words[0] in ("ubuntu", "debian") and words[1:2] and words[1].isalpha() and words[1] not in releases:

@@ -3,13 +3,14 @@
 import pytest
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
+from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable
-from rosimpact.impact.targets.surface.includes import compiled, unpack
+from rosimpact.impact.targets.surface.includes import unpack
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 

@@ -39,14 +39,6 @@ class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
 
 
-class Stored(NamedTuple):
-    """One version of a package. approximate: a branch stood for its tag."""
-
-    version: str
-    approximate: bool
-    surface: Surface
-
-
 class About(NamedTuple):
     """What a file holds. versions: of all packages together. distros: whose versions were read, space separated. date:
     the newest day of what was known of them."""
@@ -294,13 +286,6 @@ class SurfaceHistory:
         values = (value for kind in ("bound", "taken") for _, value, _ in self._rows.get(kind, ()))
         found = {_decode_first(value).name.rpartition(".")[2] for value in values}
         return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
-
-    def stored(self) -> Iterator[Stored]:
-        """Every version."""
-        for version in self.versions:
-            surface = self.surface(version)
-            assert surface is not None
-            yield Stored(version, version in self.approximate, surface)
 
 
 _decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
