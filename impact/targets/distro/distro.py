@@ -26,7 +26,7 @@ from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
 from ..version import number_of
 from .conda import CHANNELS, libraries_of
-from .known import _upstream, day_of, end_of_day, find_distro, known_distros, systems_of_rosdep
+from .known import _upstream, day_of, did_you_mean, end_of_day, find_distro, known_distros, systems_of_rosdep
 from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
 
 if TYPE_CHECKING:
@@ -672,9 +672,5 @@ def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
 
 
 def _unknown_distro(name: str, data: Snapshot) -> str:
-    import difflib
-
     names = [known.name for known in known_distros(data)]
-    close = difflib.get_close_matches(name, names, 1)
-    hint = f"; did you mean `{close[0]}`?" if close else "."
-    return f"unknown distro `{name}`{hint} Known: {', '.join(names)}"
+    return f"unknown distro `{name}`{did_you_mean(name, names, '; ') or '.'} Known: {', '.join(names)}"

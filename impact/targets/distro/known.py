@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import functools
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import msgspec
@@ -46,6 +47,14 @@ def known_distros(data: Snapshot | None = None) -> tuple[KnownDistro, ...]:
 def find_distro(name: str, data: Snapshot | None = None) -> KnownDistro | None:
     """The distro of this name."""
     return _known_distros(data or snapshots.default()).get(name)
+
+
+def did_you_mean(name: str, known: Iterable[str], before: str = "") -> str:
+    """A question about a name that is none, after some text; empty where nothing is called like it."""
+    import difflib
+
+    close = difflib.get_close_matches(name, list(known), 1)
+    return f"{before}did you mean `{close[0]}`?" if close else ""
 
 
 def release_day(distro: str) -> str:
