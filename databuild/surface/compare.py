@@ -14,7 +14,7 @@ from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
 from ...impact.facts.parameters import mentions
 from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
-from ...impact.targets.surface.fields import snake
+from ...impact.targets.surface.fields import ROS1_SUFFIXES, snake
 from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 from . import compare_build, compare_cpp, compare_python
@@ -196,18 +196,7 @@ def _all_headers(surface: Surface) -> dict[str, bool]:
 def _request(stem: str, surface: Surface) -> bool:
     """Whether a header of ROS 1 is made of part of a service or action."""
     names = {name.partition("/")[2] for name, _ in surface.interfaces}
-    ends = (
-        "Request",
-        "Response",
-        "Action",
-        "ActionGoal",
-        "ActionResult",
-        "ActionFeedback",
-        "Goal",
-        "Result",
-        "Feedback",
-    )
-    return stem in names or any(stem.endswith(end) and stem[: -len(end)] in names for end in ends)
+    return any(stem.removesuffix(end) in names for ends in ROS1_SUFFIXES.values() for end in ends)
 
 
 def _headers_changed(
@@ -275,7 +264,7 @@ def _cpp(
     open_ended = _open_ended(old, new)
     has = _all_headers(new)
     for change in changes:
-        if change.kind.startswith("header ") or change.kind == "renamed":
+        if change.kind == "renamed":
             continue
         if change.kind == "default" and (change.old, change.new) in broken:
             continue  # both declarations are shown with what breaks

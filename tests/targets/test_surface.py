@@ -111,6 +111,14 @@ def test_a_renamed_header_names_its_successor(told):
     ) == ["c++ removed header arm/a.h -> arm/a.hpp", "c++ added header arm/a.hpp ok"]
 
 
+def test_a_header_that_warns_names_what_to_include(state):
+    headers = {"arm/a.hpp": "void f();", "arm/b.hpp": "void f();"}
+    warning = {**headers, "arm/b.hpp": '#warning obsolete, include arm/a.hpp\n#include "arm/a.hpp"\nvoid f();'}
+    before, after = (state(files("arm", each)) for each in (headers, warning))
+    (change,) = compare(before.surfaces["arm"], after.surfaces["arm"], before, after)
+    assert (change.kind, change.what, change.name, change.instead) == ("deprecated", "header", "arm/b.hpp", "arm/a.hpp")
+
+
 # How a name can still be there: old headers, new headers.
 STILL_THERE = {
     "in a header that the old one includes": (
