@@ -13,6 +13,7 @@ import stat
 import threading
 import time
 from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -48,6 +49,19 @@ def read_table(path: Path, kind: type[T]) -> T:
         return msgspec.json.decode(raw, type=kind)
     except (OSError, ValueError, RecursionError, zstandard.ZstdError) as error:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+@cache
+def decoder_of(kind: Any) -> Callable[[bytes | msgspec.Raw], Any]:
+    """What reads MessagePack as a type."""
+    return msgspec.msgpack.Decoder(kind).decode
+
+
+def read_packed(data: bytes, kind: Any) -> Any:
+    """What databuild packed into a row, as MessagePack."""
+    import zstandard
+
+    return decoder_of(kind)(zstandard.ZstdDecompressor().decompress(data))
 
 
 def decompress(packed: Path, sha256: str, described: str) -> bytes:

@@ -10,9 +10,10 @@ from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable
-from rosimpact.impact.targets.surface.includes import unpack
+from rosimpact.impact.targets.surface.includes import Included
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
+from rosimpact.impact.targets.unpacked import read_packed
 
 
 @pytest.mark.parametrize(
@@ -54,7 +55,7 @@ def test_each_version_includes_what_it_did():
     including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))])
     including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))])
     including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], True)
-    included = unpack(including.packed())
+    included = read_packed(including.packed(), Included)
     written = {version: included.written("arm/a.h", version) for version in ("1.0.0", "2.0.0", "3.0.0", "4.0.0")}
     assert {version: None if told is None else [one.path for one in told] for version, told in written.items()} == {
         "1.0.0": ["x", "y"],

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
-import zstandard
 
 from ....edges.memory import cached_method
 from ...facts.cpp.lexical import Include
@@ -23,6 +22,7 @@ from ..platform import neighbours
 from ..snapshot import DATA, SnapshotError
 from ..surface.includes import path_of, there
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
+from ..unpacked import read_packed
 from ..version import parts
 from .providers import default_providers
 
@@ -67,9 +67,6 @@ class HeaderBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     every: tuple[Include, ...]
     headers: dict[str, tuple[HeaderState, ...]]
-
-
-_decode_block = msgspec.msgpack.Decoder(HeaderBlock).decode
 
 
 class SystemLibraries:
@@ -153,7 +150,7 @@ class SystemLibraries:
     @lru_cache(maxsize=64)  # noqa: B019
     def _block(self, library: str, start: str) -> HeaderBlock:
         (data,) = self._file.columns("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
-        return _decode_block(zstandard.ZstdDecompressor().decompress(data))
+        return read_packed(data, HeaderBlock)
 
     def _state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
         """The same with the one state that it has in a version; None where the version has no such header."""

@@ -6,7 +6,6 @@ little. The line of versions is one for each ROS generation, since nothing is go
 """
 
 import msgspec
-import zstandard
 
 from ...facts.surface import Entity
 from ..version import newest_up_to
@@ -118,11 +117,3 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
         than all."""
         found = newest_up_to(version, [known for known in self.versions if known not in self.approximate])
         return None if found is None else self.versions.index(found)
-
-
-def unpack(data: bytes) -> Line:
-    """A stored line."""
-    return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
-
-
-_decoder = msgspec.msgpack.Decoder(Line)

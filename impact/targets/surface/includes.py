@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 
 import msgspec
-import zstandard
 
 from ...facts.cpp.lexical import Include
 from ..version import newest_up_to
@@ -83,11 +82,3 @@ def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
 def there(spans: Sequence[int], place: int) -> bool:
     """Whether a place lies in some spans; none at all are all places."""
     return not spans or any([spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2)])
-
-
-def unpack(data: bytes) -> Included:
-    """What databuild packed, see surface_file.py there."""
-    return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
-
-
-_decoder = msgspec.msgpack.Decoder(Included)

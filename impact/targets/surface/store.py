@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
-import zstandard
 
 from ....edges.console import UserError
 from ....edges.memory import cached_method
@@ -25,8 +24,8 @@ from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ModuleSurface, Taken
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
 from ..snapshot import DATA, SnapshotError
-from . import includes as surface_includes
-from .changes import Line, unpack
+from ..unpacked import decoder_of, read_packed
+from .changes import Line
 from .includes import Included, there
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ class SurfaceHistory:
 
     def __init__(self, package: str, data: bytes, includes: bytes):
         self.package, self._includes = package, includes
-        versions, approximate, rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+        versions, approximate, rows = read_packed(data, _Rows)
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
         # Values are read where they are asked for.
@@ -177,7 +176,7 @@ class SurfaceHistory:
     @cached_property
     def included(self) -> Included:
         """What the headers of each version include."""
-        return surface_includes.unpack(self._includes)
+        return read_packed(self._includes, Included)
 
     def interfaces(self, version: str) -> dict[str, Interface]:
         """The messages, services and actions of a version, by `msg/Name`."""
@@ -189,7 +188,7 @@ class SurfaceHistory:
             return iter(())
         place = self.versions.index(version)
         rows = self._by_last.get(name.rpartition("::")[2], ())
-        near = tuple(_decoder_of(Entity)(value) for _, value, spans in rows if there(spans, place))
+        near = tuple(decoder_of(Entity)(value) for _, value, spans in rows if there(spans, place))
         found = offered([HeaderSurface(near, inline=self._inline(version))]) if near else ()
         return (entity for entity in found if entity.name == name)
 
@@ -237,7 +236,7 @@ class SurfaceHistory:
     ) -> Iterator[tuple[str, Any]]:
         """Scope and value of each row of a kind that a version has. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
-        decode = _decoder_of(type_)
+        decode = decoder_of(type_)
         for scope, value, spans in self._rows.get(kind, ()):
             if of and scope not in of:
                 continue
@@ -288,16 +287,11 @@ class SurfaceHistory:
         return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
 
 
-_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
+_Rows = tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]]
 _name = itemgetter(0)
 
 
-@cache
-def _decoder_of(type_: Any) -> Callable[[msgspec.Raw], Any]:
-    return msgspec.msgpack.Decoder(type_).decode
-
-
-_decoded = _decoder_of(Any)
+_decoded = decoder_of(Any)
 
 
 class _Head(msgspec.Struct, array_like=True, gc=False):
@@ -313,7 +307,7 @@ class _First(msgspec.Struct, array_like=True, gc=False):
     name: str
 
 
-_decode_head, _decode_first = _decoder_of(_Head), _decoder_of(_First)
+_decode_head, _decode_first = decoder_of(_Head), decoder_of(_First)
 # How what a row of a kind is about is called.
 _NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
     "header": lambda package, path, value: path,
@@ -381,7 +375,7 @@ class Surfaces(StoredRows):
     def line(self, package: str, ros: int) -> Line | None:
         """What changed in a package of a ROS generation from version to version, None when it is not there."""
         row = self._row("changes", package, ros)
-        return unpack(row[0]) if row else None
+        return read_packed(row[0], Line) if row else None
 
     def lines(self, package: str) -> dict[int, Line]:
         """The same by ROS generation; empty when the package is not there."""
@@ -391,7 +385,7 @@ class Surfaces(StoredRows):
     def included(self, package: str, ros: int) -> Included | None:
         """What the headers of each version of a package of a ROS generation include, None when it is not there."""
         row = self._row("includes", package, ros)
-        return surface_includes.unpack(row[0]) if row else None
+        return read_packed(row[0], Included) if row else None
 
     def _row(self, columns: str, package: str, ros: int) -> tuple | None:
         if ros not in self.generations(package):
@@ -408,15 +402,14 @@ class Surfaces(StoredRows):
     def _headers(self) -> dict[str, tuple[str, ...]]:
         """Headers that do not lie in a folder called like their package."""
         (data,) = next(self.rows("SELECT data FROM headers"))
-        return msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(data), type=dict[str, tuple[str, ...]])
+        return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def changing_parameters(self) -> dict[str, frozenset[str]]:
         """The last parts of names of parameters that some versions of a package surely declare and others surely do
         not, with those packages."""
         (data,) = next(self.rows("SELECT data FROM parameters"))
-        plain = zstandard.ZstdDecompressor().decompress(data)
-        return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
+        return read_packed(data, dict[str, frozenset[str]])
 
     @cached_property
     def about(self) -> About:
