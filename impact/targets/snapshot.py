@@ -1,6 +1,6 @@
 """The shipped snapshot of distro data: unpacked once into the user's cache, then read as SQLite.
 
-What is shipped: `data/distros.sqlite.zst` (tables below), `data/snapshot.json` (its date and content hash) and the
+What is shipped: `data/distros.sqlite.zst` (its tables: databuild/write.py), `data/snapshot.json` (its date and content hash) and the
 reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same database when
 it is unpacked. The unpacked file is named after the content of all three, so a new version of the data never meets an
 old file. A file that turns out broken is unpacked again; where no folder can be written the database lives in memory.
@@ -22,37 +22,6 @@ from ...edges.memory import cached_method
 from ..cache import cache_folder
 from .unpacked import AddFacts, ShippedDatabase, SnapshotError
 from .unpacked import read_table as read_table
-
-SCHEMA = """
-CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
-CREATE TABLE distro(id INTEGER PRIMARY KEY, name TEXT UNIQUE, ros INTEGER, python INTEGER, status TEXT);
-CREATE TABLE platforms(distro INTEGER, ts INTEGER, names TEXT, PRIMARY KEY(distro, ts)) WITHOUT ROWID;
-CREATE TABLE sync(distro INTEGER, day TEXT, cut INTEGER, PRIMARY KEY(distro, day)) WITHOUT ROWID;
-CREATE TABLE repository(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
-CREATE TABLE package(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
-CREATE TABLE url(id INTEGER PRIMARY KEY, text TEXT);
-CREATE TABLE packages(id INTEGER PRIMARY KEY, names TEXT);
-CREATE TABLE release(distro INTEGER, repository INTEGER, ts INTEGER, version TEXT, packages INTEGER,
-    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
-CREATE TABLE home(package INTEGER, distro INTEGER, repository INTEGER,
-    PRIMARY KEY(package, distro, repository)) WITHOUT ROWID;
-CREATE TABLE source(distro INTEGER, repository INTEGER, ts INTEGER, url INTEGER, branch TEXT, status TEXT,
-    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
-CREATE TABLE manifest(distro INTEGER, package INTEGER, version TEXT, dependencies INTEGER, build_type TEXT,
-    PRIMARY KEY(distro, package, version)) WITHOUT ROWID;
-CREATE TABLE dependencies(id INTEGER PRIMARY KEY, entries TEXT);
-CREATE TABLE rule(key TEXT, os TEXT, ts INTEGER, rule TEXT, PRIMARY KEY(key, os, ts)) WITHOUT ROWID;
-"""
-"""Tables of the shipped database. `ts` and `cut` are seconds since 1970 (UTC) of a commit in rosdistro.
-
-release: what a repository released from that moment on; version NULL: nothing any more.
-packages: names, space separated. home: where a package was ever released.
-sync: on `day` apt got the packages as released at `cut`.
-platforms: names such as `ubuntu jammy`, comma separated, main one first.
-manifest: one row where a package's declared dependencies changed with a version. dependencies.entries: one line for
-each, tab separated: name, kinds (letters of KINDS), condition, bounds (`version_gte=1.2 version_lt=2`).
-rule: the rosdep rule of a key for an operating system as JSON; NULL: dropped.
-"""
 
 FACT_SCHEMA = """
 CREATE TABLE library(platform TEXT, name TEXT, version TEXT, source TEXT, PRIMARY KEY(platform, name)) WITHOUT ROWID;

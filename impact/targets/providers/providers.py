@@ -1,6 +1,6 @@
 """Who provides a header, CMake package, pkg-config file, Python module or program: looked up in the shipped table.
 
-The table (`data/providers.sqlite.zst`, made by build_providers.py) is unpacked once into the user's cache and read as
+The table (`data/providers.sqlite.zst`, made by databuild/providers.py) is unpacked once into the user's cache and read as
 SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
 remembers it.
 """
@@ -18,29 +18,6 @@ from ..unpacked import ShippedDatabase
 from ..version import parts
 
 __all__ = ["HeaderSpan", "Providers", "default_providers"]
-
-SCHEMA = """
-CREATE TABLE platform(bit INTEGER PRIMARY KEY, name TEXT);
-CREATE TABLE provider(id INTEGER PRIMARY KEY, entries TEXT);
-CREATE TABLE header(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE cmake(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE pkgconfig(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE module(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE program(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE pattern(id INTEGER PRIMARY KEY, spans TEXT);
-CREATE TABLE ros_header(path TEXT, package TEXT, pattern INTEGER, PRIMARY KEY(path, package)) WITHOUT ROWID;
-CREATE TABLE ros_package(name TEXT PRIMARY KEY, pattern INTEGER) WITHOUT ROWID;
-CREATE TABLE ros_module(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
-CREATE TABLE ros_cmake(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
-"""
-"""Tables of the shipped database.
-
-provider.entries: one line for each provider, best first: a rosdep key and, where it differs, the Debian package that it
-installs; an empty line stands for the C library and compiler. platforms: bits of the platforms that have the name.
-pattern.spans: one line for each unbroken run of releases: distro, first version, last version (`-` when the newest
-release known still counts). ros_header: where a package's header is. ros_package: the releases whose trees were read.
-ros_module, ros_cmake: packages, space separated.
-"""
 
 FACT_SCHEMA = """
 CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;
