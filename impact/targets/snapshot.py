@@ -1,9 +1,10 @@
 """The shipped snapshot of distro data: unpacked once into the user's cache, then read as SQLite.
 
-What is shipped: `data/distros.sqlite.zst` (its tables: databuild/write.py), `data/snapshot.json` (its date and content hash) and the
-reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same database when
-it is unpacked. The unpacked file is named after the content of all three, so a new version of the data never meets an
-old file. A file that turns out broken is unpacked again; where no folder can be written the database lives in memory.
+What is shipped: `data/distros.sqlite.zst` (its tables: databuild/write.py), `data/snapshot.json` (its date and content
+hash) and the reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same
+database when it is unpacked. The unpacked file is named after the content of all three, so a new version of the data
+never meets an old file. A file that turns out broken is unpacked again; where no folder can be written the database
+lives in memory.
 """
 
 import contextlib

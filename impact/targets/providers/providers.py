@@ -1,7 +1,7 @@
 """Who provides a header, CMake package, pkg-config file, Python module or program: looked up in the shipped table.
 
-The table (`data/providers.sqlite.zst`, made by databuild/providers.py) is unpacked once into the user's cache and read as
-SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
+The table (`data/providers.sqlite.zst`, made by databuild/providers.py) is unpacked once into the user's cache and read
+as SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
 remembers it.
 """
 
