@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import msgspec
 
@@ -104,6 +104,8 @@ class ShippedDatabase:
     fact_files: tuple[str, ...]
     table: str
     """One that the facts fill."""
+    fill: ClassVar[Callable[..., None]]
+    """Adds what the files of reviewed facts hold to a connection."""
     form = 1
 
     def __init__(self, data: Path, cache: Path | None, facts: Path):
@@ -111,11 +113,6 @@ class ShippedDatabase:
         self._connection: sqlite3.Connection | None = None
         self._reader = 0  # the process that opened it
         self._lock = threading.Lock()
-
-    @staticmethod
-    def fill(connection: sqlite3.Connection, *facts: bytes) -> None:
-        """Adds what the files of reviewed facts hold."""
-        raise NotImplementedError
 
     def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
         """All rows of a query."""

@@ -14,15 +14,11 @@ from ..version import at_least, parts
 from .libraries import system_libraries
 
 
-class _Shipped(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a part of the file is made of."""
-
-
-class _Boost(_Shipped):
+class _Boost(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Boost's libraries. compiled: that are linked against. brought: that come with another one. of_roscpp: in
     catkin_LIBRARIES wherever roscpp is found. headers: whose use needs a compiled library."""
 
-    class Header(_Shipped):
+    class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Headers by how their path begins. until: the version that needs none any more."""
 
         start: str
@@ -39,7 +35,7 @@ class _Boost(_Shipped):
     headers: list[Header]
 
 
-class _Gone(_Shipped):
+class _Gone(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     package: str
     component: str
     library: str
@@ -48,7 +44,7 @@ class _Gone(_Shipped):
     help: str = ""
 
 
-class _CMakePackage(_Shipped):
+class _CMakePackage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """library: its name in platform_versions.yaml; of others that is theirs in lower case, with `-`. same_major: its
     version file accepts only the same major version; others accept anything newer. variables: that find_package() sets,
     by how they begin, where their spelling is not the package's own."""
@@ -58,7 +54,7 @@ class _CMakePackage(_Shipped):
     variables: dict[str, str] = {}
 
 
-class _Standard(_Shipped):
+class _Standard(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Headers that do not compile below a C++ standard, by the start of their path. distros: where every release of the
     package needs it, so that one built from source does too. sure: False where its targets ask CMake for it themselves.
     """
@@ -73,7 +69,7 @@ class _Standard(_Shipped):
     distros: frozenset[str] = frozenset()
 
 
-class _Exact(_Shipped):
+class _Exact(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A package whose `x-config.cmake`, which answers to X in any case, became `xConfig.cmake`: that answers to `x`."""
 
     name: str
@@ -82,7 +78,7 @@ class _Exact(_Shipped):
     source: str
 
 
-class _Facts(_Shipped):
+class _Facts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """opencv: functions by the library that they are compiled into, of those libraries that cv_bridge does not hand on
     since Kinetic (it does core, imgproc and imgcodecs). packages: by the name that find_package() takes. standards: the
     newest first. roots: how include paths begin, by the library's name in platform_versions.yaml. debian: the Debian
