@@ -276,8 +276,8 @@ def _message(change, old: Text, new: Text) -> str:
 
 def precision(folder: Path, count: int, listed: int) -> int:
     from rosimpact.databuild.surface.clones import Clones
+    from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
     from rosimpact.impact.targets.version import parts
 
     clones = Clones(folder)
@@ -336,8 +336,8 @@ def precision(folder: Path, count: int, listed: int) -> int:
 def recall(folder: Path, table: Path, listed: int) -> int:
     import yaml
     from rosimpact.databuild.surface.clones import Clone, VersionError
+    from rosimpact.databuild.surface.compare import RepositorySurfaces, compare_states
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare_states
     from rosimpact.impact.tree import TreeError
 
     entries = [e for e in yaml.safe_load(table.read_text()) if str(e["verified"]).startswith("git")]

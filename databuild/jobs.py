@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..impact.facts.store import Store
-from ..impact.targets.surface.compare import RepositorySurfaces
 from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
 from .surface.clones import Clone
+from .surface.compare import RepositorySurfaces
 from .surface.package import surfaces_of
 from .surface_changes import Lines
 from .surface_file import Including, Packed, Packer, Stored

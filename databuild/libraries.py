@@ -29,9 +29,9 @@ from ..edges.files import write_file
 from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import HeaderSurface
 from ..impact.targets.snapshot import default
-from ..impact.targets.surface.includes import compiled
 from ..impact.targets.surface.surface import ExportedTarget
 from .providers import cmake_names, dependencies_of, include_paths, is_of_compiler, lines_of, of_ros, read_keys
+from .surface.headers import compiled
 from .surface.unpacked_deb import DebError, members_and_links
 
 # What nobody outside of a library is meant to include or to call; and libraries of Boost that are made for others.

@@ -19,11 +19,10 @@ from ..edges.files import read_chunks, writing
 from ..impact.facts.surface import Entity, HeaderSurface
 from ..impact.targets.providers.libraries import NEAREST, HeaderBlock, HeaderState
 from ..impact.targets.providers.providers import default_providers
-from ..impact.targets.surface.store import Stored
 from ..impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 from ..impact.targets.version import parts
 from .libraries import INNER, INNER_NAME, upstream
-from .surface_file import Packer, spans_of
+from .surface_file import Packer, Stored, spans_of
 
 if TYPE_CHECKING:
     from ..impact.facts.cpp.lexical import Include

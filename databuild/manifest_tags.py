@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from ..impact.targets.distro.distro import version_key
-from ..impact.targets.snapshot import DATA, Snapshot, shipped_info, unpack
+from ..impact.targets.snapshot import DATA, Snapshot, shipped_info
 from .git import open_repository
 from .manifests import DeclaredVersion, changes_only, parse_manifest
 from .surface.releases import Release, git_directory, releases_of, tag_of
@@ -154,7 +154,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--output", type=Path, default=DATA)
     given = parser.parse_args(arguments)
     declared = read_clones(given.clones, Snapshot(given.data))
-    raw, added = add(unpack(given.data), declared)
+    raw, added = add(Snapshot(given.data).unpack(), declared)
     info = shipped_info(given.data)
     size = write_snapshot(raw, info.date, info.sources, given.output)
     print(f"{len(declared)} manifests at tags, {added} added; {size} bytes packed")

@@ -41,7 +41,7 @@ _ORDER = "betoxsdcrgm"
 
 
 class DeclaredVersion(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """One package version of a distro: its dependencies as lines (see snapshot.SCHEMA) and its build type."""
+    """One package version of a distro: its dependencies as lines (see write.SCHEMA) and its build type."""
 
     distro: str
     package: str

@@ -27,9 +27,32 @@ import msgspec
 
 from ..edges.files import write_file
 from ..impact.targets.distro.rosdep import decode_rule
-from ..impact.targets.providers.providers import BY_FOLDER, SCHEMA
+from ..impact.targets.providers.providers import BY_FOLDER
 from ..impact.targets.snapshot import DATA, Snapshot, default
 from .history import RosFacts, read_repositories
+
+SCHEMA = """
+CREATE TABLE platform(bit INTEGER PRIMARY KEY, name TEXT);
+CREATE TABLE provider(id INTEGER PRIMARY KEY, entries TEXT);
+CREATE TABLE header(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE cmake(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pkgconfig(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE module(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE program(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pattern(id INTEGER PRIMARY KEY, spans TEXT);
+CREATE TABLE ros_header(path TEXT, package TEXT, pattern INTEGER, PRIMARY KEY(path, package)) WITHOUT ROWID;
+CREATE TABLE ros_package(name TEXT PRIMARY KEY, pattern INTEGER) WITHOUT ROWID;
+CREATE TABLE ros_module(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+CREATE TABLE ros_cmake(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+"""
+"""Tables of the shipped database.
+
+provider.entries: one line for each provider, best first: a rosdep key and, where it differs, the Debian package that it
+installs; an empty line stands for the C library and compiler. platforms: bits of the platforms that have the name.
+pattern.spans: one line for each unbroken run of releases: distro, first version, last version (`-` when the newest
+release known still counts). ros_header: where a package's header is. ros_package: the releases whose trees were read.
+ros_module, ros_cmake: packages, space separated.
+"""
 
 _HEADER_DEPTH = 4
 _MODULE_DEPTH = 2

@@ -92,7 +92,7 @@ def update(
     used = snapshot or snapshots.default()
     try:
         raw, found = refresh.refreshed(
-            snapshots.unpack(used.data),
+            used.unpack(),
             index_url or refresh.INDEX,
             sync_days or refresh.github_sync_days,
             report,

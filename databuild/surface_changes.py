@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS
-from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, overload_of
-from ..impact.targets.surface.compare import RepositorySurfaces, VersionChange, compare
+from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, VersionChange, overload_of
 from ..impact.targets.surface.python import UNKNOWN
+from .surface.compare import RepositorySurfaces, compare
 from .surface_file import brief, pack
 
 # What other tables tell (messages), and what a package has for itself.

@@ -21,10 +21,10 @@ from ..impact.facts.interface import Interface
 from ..impact.facts.parameters import last_part
 from ..impact.facts.python.surface import Bound
 from ..impact.facts.surface import Entity, HeaderSurface
-from ..impact.targets.surface import includes as surface_includes
-from ..impact.targets.surface.changes import PARAMETER, Line, unpack
+from ..impact.targets.surface.changes import PARAMETER, Line
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
-from ..impact.targets.surface.store import About, Stored, StoredSurfacesError, SurfaceHistory
+from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory
+from ..impact.targets.unpacked import read_packed
 
 if TYPE_CHECKING:
     from ..impact.targets.surface.surface import Surface
@@ -56,6 +56,14 @@ class Packed(NamedTuple):
     data: bytes
     changes: bytes
     includes: bytes
+
+
+class Stored(NamedTuple):
+    """One version of a package. approximate: a branch stood for its tag."""
+
+    version: str
+    approximate: bool
+    surface: Surface
 
 
 class Packer:
@@ -247,7 +255,7 @@ def _elsewhere(packages: Packages) -> dict[str, str]:
     """Names that a package lost and others have or had, with those packages."""
     lost: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
-        events = unpack(packed.changes).events
+        events = read_packed(packed.changes, Line).events
         for side in ("c++", "header", "python"):
             for name in events.get(side, ()):
                 lost.setdefault(name, set()).add(package)
@@ -263,7 +271,7 @@ def _headers(packages: Packages) -> bytes:
     """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
     found: dict[str, dict[str, None]] = {}
     for (package, _), packed in sorted(packages.items()):
-        for header in surface_includes.unpack(packed.includes).headers:
+        for header in read_packed(packed.includes, Included).headers:
             if not header.startswith(f"{package}/"):
                 found.setdefault(header, {})[package] = None
     return _listed(found)
@@ -278,7 +286,7 @@ def _parameters(packages: Packages) -> bytes:
     """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
     found: dict[str, dict[str, None]] = {}
     for (package, _), packed in sorted(packages.items()):
-        for name, events in unpack(packed.changes).events.get(PARAMETER, {}).items():
+        for name, events in read_packed(packed.changes, Line).events.get(PARAMETER, {}).items():
             if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told):
                 found.setdefault(last_part(name), {})[package] = None
     return _listed(found)

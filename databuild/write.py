@@ -11,13 +11,44 @@ from typing import NamedTuple
 import msgspec
 
 from ..edges.files import write_file
-from ..impact.targets.snapshot import SCHEMA, SnapshotInfo
+from ..impact.targets.snapshot import SnapshotInfo
 from .keys import RuleEvent
 from .manifests import DeclaredVersion
 from .releases import DistroHistory
 
 FILES = ("distros.sqlite.zst", "snapshot.json")
 """What a data folder gets."""
+
+SCHEMA = """
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+CREATE TABLE distro(id INTEGER PRIMARY KEY, name TEXT UNIQUE, ros INTEGER, python INTEGER, status TEXT);
+CREATE TABLE platforms(distro INTEGER, ts INTEGER, names TEXT, PRIMARY KEY(distro, ts)) WITHOUT ROWID;
+CREATE TABLE sync(distro INTEGER, day TEXT, cut INTEGER, PRIMARY KEY(distro, day)) WITHOUT ROWID;
+CREATE TABLE repository(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
+CREATE TABLE package(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
+CREATE TABLE url(id INTEGER PRIMARY KEY, text TEXT);
+CREATE TABLE packages(id INTEGER PRIMARY KEY, names TEXT);
+CREATE TABLE release(distro INTEGER, repository INTEGER, ts INTEGER, version TEXT, packages INTEGER,
+    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
+CREATE TABLE home(package INTEGER, distro INTEGER, repository INTEGER,
+    PRIMARY KEY(package, distro, repository)) WITHOUT ROWID;
+CREATE TABLE source(distro INTEGER, repository INTEGER, ts INTEGER, url INTEGER, branch TEXT, status TEXT,
+    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
+CREATE TABLE manifest(distro INTEGER, package INTEGER, version TEXT, dependencies INTEGER, build_type TEXT,
+    PRIMARY KEY(distro, package, version)) WITHOUT ROWID;
+CREATE TABLE dependencies(id INTEGER PRIMARY KEY, entries TEXT);
+CREATE TABLE rule(key TEXT, os TEXT, ts INTEGER, rule TEXT, PRIMARY KEY(key, os, ts)) WITHOUT ROWID;
+"""
+"""Tables of the shipped database. `ts` and `cut` are seconds since 1970 (UTC) of a commit in rosdistro.
+
+release: what a repository released from that moment on; version NULL: nothing any more.
+packages: names, space separated. home: where a package was ever released.
+sync: on `day` apt got the packages as released at `cut`.
+platforms: names such as `ubuntu jammy`, comma separated, main one first.
+manifest: one row where a package's declared dependencies changed with a version. dependencies.entries: one line for
+each, tab separated: name, kinds (letters of KINDS), condition, bounds (`version_gte=1.2 version_lt=2`).
+rule: the rosdep rule of a key for an operating system as JSON; NULL: dropped.
+"""
 
 
 class DistroRow(NamedTuple):

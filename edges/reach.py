@@ -31,9 +31,9 @@ class Reach:
 
     def bits(self, names: Iterable[str]) -> int:
         """The bits of several names."""
-        found = 0
+        found, known = 0, self._bits
         for name in names:
-            found |= self.bit(name)
+            found |= known.get(name) or self.bit(name)
         return found
 
     def names(self, mask: int) -> Iterator[str]:
@@ -44,13 +44,26 @@ class Reach:
                 yield self._names[8 * place + lowest.bit_length() - 1]
                 byte ^= lowest
 
-    def masks(self, name: str) -> tuple[int, int]:
-        """The names that one leads to over any number of steps, itself included, and those that come along with them.
+    def masks(self, names: Iterable[str]) -> tuple[int, int]:
+        """The names that some lead to over any number of steps, themselves included, and those that come along."""
+        reached = along = 0
+        for name in names:
+            leads, beside = self._masks.get(name) or self._find_masks(name)
+            reached |= leads
+            along |= beside
+        return reached, along
 
-        By Tarjan's algorithm: names that lead to each other have the same masks."""
-        known = self._masks.get(name)
-        if known is not None:
-            return known
+    def known(self, names: Iterable[str]) -> tuple[int, int]:
+        """The same as far as it is known without looking further."""
+        reached = along = 0
+        for name in names:
+            leads, beside = self._masks.get(name) or (self.bit(name), 0)
+            reached |= leads
+            along |= beside
+        return reached, along
+
+    def _find_masks(self, name: str) -> tuple[int, int]:
+        """The same of one name. By Tarjan's algorithm: names that lead to each other have the same masks."""
         masks = self._masks
         order: dict[str, int] = {}
         low: dict[str, int] = {}

@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from rosimpact.impact.conditions import Environment
+from rosimpact.impact.conditions.manifest import evaluate
 from rosimpact.impact.targets import snapshot as snapshots
-from rosimpact.impact.targets.distro.distro import TargetError, condition_holds, version_key
+from rosimpact.impact.targets.distro.distro import TargetError, version_key
 from rosimpact.impact.targets.distro.known import KnownDistro, day_of, end_of_day, known_distros
 from rosimpact.impact.targets.snapshot import Snapshot
 from rosimpact.impact.targets.version import parts
@@ -291,15 +293,11 @@ class History:
 
     @functools.cached_property
     def _manifests(self) -> dict[str, list[tuple[list[int], tuple[str, ...]]]]:
-        variables = {
-            "ROS_VERSION": str(self.known.ros),
-            "ROS_DISTRO": self.distro,
-            "ROS_PYTHON_VERSION": str(self.known.python),
-        }
+        here = Environment(self.distro, str(self.known.ros), (self.known.python, 0))
 
         @functools.cache
         def come_along(entries: str) -> tuple[str, ...]:
-            return _names_that_come_along(entries, variables)
+            return _names_that_come_along(entries, here)
 
         found: dict[str, list[tuple[list[int], tuple[str, ...]]]] = {}
         for package, version, entries in self._data.rows(
@@ -502,11 +500,11 @@ def _closure(below: list[set[int]]) -> NDArray[np.bool_]:
     return np.unpackbits(raw.reshape(len(below), size), axis=1, bitorder="little")[:, : len(below)].astype(bool)
 
 
-def _names_that_come_along(entries: str, variables: dict[str, str]) -> tuple[str, ...]:
+def _names_that_come_along(entries: str, here: Environment) -> tuple[str, ...]:
     found = []
     for line in entries.splitlines():
         name, letters, condition = (*line.split("\t"), "", "")[:3]
-        if _COMES_ALONG.intersection(letters) and (not condition or condition_holds(condition, variables)):
+        if _COMES_ALONG.intersection(letters) and (not condition or evaluate(condition, here)):
             found.append(name)
     return tuple(found)
 

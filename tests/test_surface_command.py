@@ -83,10 +83,10 @@ New: 1 (1 method)
 
 def test_a_line_fits_eighty_columns(repos, tmp_path):
     from rosimpact.databuild.surface.clones import Clone
+    from rosimpact.databuild.surface.compare import RepositorySurfaces, compare_states
     from rosimpact.impact.facts.store import Store
     from rosimpact.impact.report.style import PLAIN
     from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, diff_text, show_text
-    from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare_states
 
     clone = Clone(repos / "ros2+rclcpp")
     with Store(tmp_path / "other") as store:

@@ -12,10 +12,10 @@ from ...edges.console import UserError
 from ...impact.targets.distro.distro import DistroTarget, TargetError
 from ...impact.targets.distro.known import known_distros
 from ...impact.targets.snapshot import Snapshot, default
-from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.surface import Surface
 from ...impact.targets.version import parts
 from ...impact.tree import GitTree, TreeError
+from .compare import RepositorySurfaces
 from .package import of_tree
 from .releases import git_directory, plain_url, releases_of, tag_of
 

@@ -22,9 +22,7 @@ from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.launch import flow as flow_launch
 from ...impact.facts.python import surface as surface_python
 from ...impact.facts.surface import HeaderSurface
-from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.fields import ROS1_SUFFIXES
-from ...impact.targets.surface.includes import compiled
 from ...impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,
@@ -37,6 +35,8 @@ from ...impact.targets.surface.surface import (
 )
 from .build import launch_arguments, launch_kind
 from .clones import VersionError
+from .compare import RepositorySurfaces
+from .headers import compiled
 from .unpacked_deb import DebError, DebFile, members
 
 _DPKG = Path("/var/lib/dpkg/info")

@@ -20,10 +20,10 @@ from ...impact.facts.parameters import last_part
 from ...impact.facts.store import encodable
 from ...impact.model.package import role_of_folder
 from ...impact.source_keys import source_key
-from ...impact.targets.surface.includes import compiled
 from ...impact.targets.surface.surface import BuildSurface, Surface
 from . import build as surface_build
 from . import python as surface_python
+from .headers import compiled
 
 if TYPE_CHECKING:
     from ...impact.facts.extract import ExtractedFacts

@@ -8,9 +8,9 @@ from typing import NamedTuple
 from ...impact.facts.interface import Interface
 from ...impact.targets.distro.distro import DistroTarget
 from ...impact.targets.snapshot import Snapshot, default
-from ...impact.targets.surface.compare import RepositorySurfaces
 from ...impact.targets.surface.store import Surfaces
 from .clones import VersionError, newest_with, release_of
+from .compare import RepositorySurfaces
 
 
 class StoredVersion(NamedTuple):

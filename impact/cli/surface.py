@@ -30,8 +30,8 @@ def surface_show(package: str, *, repos, all, format, output, jobs) -> str:
 def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> str:
     """What changed between two versions of a package, or of all packages of a clone."""
     from ...databuild.surface.clones import Clone
+    from ...databuild.surface.compare import RepositorySurfaces, compare, compare_states
     from ..report import surface as report
-    from ..targets.surface.compare import RepositorySurfaces, compare, compare_states
 
     with _opened_store() as store:
         if os.path.isdir(what) and repos is None:

@@ -302,12 +302,7 @@ class TargetView:
     def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
         """What these include paths bring along in the workspace: paths of other places, and of its own headers; those
         that it generates from interfaces are among both."""
-        reached = along = 0
-        for path in paths:
-            leads, beside = self._reach_of_headers.masks(path)
-            reached |= leads
-            along |= beside
-        return self._outward_by_masks(reached, along)
+        return self._outward_by_masks(*self._reach_of_headers.masks(paths))
 
     def _outward_by_masks(self, reached: int, along: int) -> tuple[frozenset[str], frozenset[str]]:
         """What outward() says where an include leads to these headers. One answer is one object, so that joins of it

@@ -8,7 +8,7 @@ import msgspec
 
 from ...edges.console import json_text, visible
 from ..facts.surface import FUNCTIONS, declared
-from ..targets.surface.compare import VersionChange
+from ..targets.surface.changes import VersionChange
 from ..targets.surface.python import SurfaceNames, signature
 from ..targets.surface.surface import Surface
 from .columns import LinePart, laid_out

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ...edges.memory import cached_method
 from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_of
-from .distro.known import known_distros
+from .distro.known import known_distros, release_day
 from .evidence import evidence_of, of_offered
 from .evidence_record import Evidence
 from .providers.libraries import system_libraries
@@ -85,9 +85,8 @@ _NEAR = 2
 
 def _steps(target: DistroTarget) -> int:
     """How many long-term distros of a target's generation are newer than it."""
-    known = known_distros()
-    here = next((one.released for one in known if one.name == target.distro), "")
-    return sum(one.lts and one.ros == target.ros and one.released > here for one in known)
+    here = release_day(target.distro)
+    return sum(one.lts and one.ros == target.ros and one.released > here for one in known_distros())
 
 
 def coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:

@@ -19,23 +19,11 @@ from ...edges.documents import DocumentError, load_json
 from ...edges.limits import limits
 from .distro.distro import DistroTarget, TargetError
 from .distro.known import known_distros
+from .providers.library import DEBIAN_PACKAGES
 from .version import compare
 
 SCHEMA = 1
 _ROS_DEBIAN = re.compile(r"ros-([a-z]+)-([a-z0-9-]+)$")
-
-# Platform library (names of platform_versions.yaml) to the Debian packages whose version tells it, first found wins.
-LIBRARIES: dict[str, tuple[str, ...]] = {
-    "assimp": ("libassimp-dev", "libassimp5"), "boost": ("libboost-dev",), "bullet": ("libbullet-dev",),
-    "ceres": ("libceres-dev",), "cmake": ("cmake",), "eigen3": ("libeigen3-dev",), "fcl": ("libfcl-dev",),
-    "fmt": ("libfmt-dev",), "gazebo-classic": ("gazebo11", "gazebo9", "gazebo7"), "gcc": ("g++", "gcc"),
-    "gtest": ("libgtest-dev",), "ffmpeg-libavcodec": ("libavcodec-dev",), "nlohmann-json": ("nlohmann-json3-dev",),
-    "numpy": ("python3-numpy",), "octomap": ("liboctomap-dev",), "opencv": ("libopencv-dev", "libopencv-core-dev"),
-    "pcl": ("libpcl-dev",), "protobuf": ("libprotobuf-dev",), "python3": ("python3",), "qt5": ("qtbase5-dev",),
-    "qt6": ("qt6-base-dev",), "spdlog": ("libspdlog-dev",), "tinyxml2": ("libtinyxml2-dev",),
-    "vtk": ("libvtk9-dev", "libvtk7-dev", "libvtk6-dev"),
-    "yaml-cpp": ("libyaml-cpp-dev",), "zeromq": ("libzmq3-dev",),
-}  # fmt: skip
 
 
 class CapturedMachine(NamedTuple):
@@ -73,7 +61,7 @@ def from_dpkg(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dic
     distro = max(by_distro, key=lambda d: (len(by_distro[d]), d), default="")
     libraries = {}
     matter = {}
-    for library, names in LIBRARIES.items():
+    for library, names in DEBIAN_PACKAGES.items():
         for name in names:
             if name in installed:
                 libraries[library] = plain(installed[name])

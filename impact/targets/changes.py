@@ -11,12 +11,13 @@ what the very release has.
 from __future__ import annotations
 
 import hashlib
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import msgspec
 
 from ..facts.usage import Pattern
+from .distro.known import release_day
 from .providers.libraries import system_libraries
 from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError, read_table
@@ -349,18 +350,6 @@ def _same_generation(distro: str, target: DistroTarget) -> bool:
     return (DISTROS[distro] >= DISTROS["ardent"]) == (target.ros == 2)
 
 
-def _released(distro: str) -> str:
-    """The ISO day of a distro's release; `9` (after every day) when the data does not tell."""
-    return _release_days().get(distro, "9")
-
-
-@cache
-def _release_days() -> dict[str, str]:
-    from .distro.known import known_distros
-
-    return {known.name: known.released for known in known_distros() if known.released}
-
-
 def _new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | None:
     if target.distro in row.new_in:
         first = row.new_in[target.distro]
@@ -368,6 +357,7 @@ def _new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | 
     return reached(row.new_since, version, target) if row.new_since else None
 
 
+@lru_cache(maxsize=10_000)
 def reached(bound: str, version: str, target: DistroTarget) -> bool:
     """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
     if not bound:
@@ -379,7 +369,7 @@ def reached(bound: str, version: str, target: DistroTarget) -> bool:
         if place is None or not _same_generation(bound, target):
             return False
         # What came with a distro came to rolling at some day before: for sure only from the distro's release on.
-        return _released(bound) <= target.date if target.distro == "rolling" else DISTROS[bound] <= place
+        return (release_day(bound) or "9") <= target.date if target.distro == "rolling" else DISTROS[bound] <= place
     return bool(version) and at_least(version, bound)
 
 

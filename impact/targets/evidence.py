@@ -11,10 +11,11 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from .changes import DISTROS, ChangeRow, all_rows, all_uses, reached, version_of
-from .distro.known import known_distros, releases
+from .distro.known import release_day, releases
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
+from .surface.store import shipped
 from .target import ChangeInForce
 from .version import at_least, parts
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from .distro.distro import DistroTarget
     from .surface.changes import ChangeEvent, Line
     from .surface.offers import Offered
-    from .surface.store import Surfaces
 
 
 def evidence_of(change: ChangeInForce) -> Evidence:
@@ -93,14 +93,6 @@ def _rows() -> dict[tuple[str, str, str], ChangeRow]:
     return {(row.kind, row.package, row.old): row for row in (*all_rows(), *all_uses().values())}
 
 
-@cache
-def surfaces() -> Surfaces:
-    """The shipped surfaces."""
-    from .surface.store import shipped
-
-    return shipped()
-
-
 def of_offered(offered: Offered) -> Evidence:
     """The evidence for what the offers of a target say of a name."""
     change = {"moved": "removed", "absent": "added"}.get(offered.state, offered.state)
@@ -112,7 +104,7 @@ def from_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
     """The evidence with what the stored surfaces tell of the name: declarations, and the versions between which it
     changed as a target sees it. As it was where they know nothing of such a change."""
     version = None if evidence.library or evidence.ahead else target.version(evidence.package)
-    line = surfaces().line(evidence.package, target.ros) if version and evidence.side else None
+    line = shipped().line(evidence.package, target.ros) if version and evidence.side else None
     place = line.place(version) if line is not None and version else None
     if line is None or place is None:
         return evidence
@@ -137,7 +129,7 @@ def from_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
 
 def _declared(evidence: Evidence, ros: int) -> Evidence:
     """The evidence with the declarations before and since."""
-    history = surfaces().history(evidence.package, ros)
+    history = shipped().history(evidence.package, ros)
     old, new = (
         declarations(history, evidence.side, evidence.name, version) for version in (evidence.last, evidence.first)
     )
@@ -200,7 +192,7 @@ def _on(evidence: Evidence, target: DistroTarget, providers: Providers) -> OnTar
 def _holds(evidence: Evidence, version: str, target: DistroTarget, providers: Providers) -> bool | None:
     """Whether a change is in force in a version that a target has, or had; None when that is not known."""
     if evidence.stored:
-        line = surfaces().line(evidence.package, target.ros)
+        line = shipped().line(evidence.package, target.ros)
         return _holds_by(line, evidence, version) if line is not None else None
     if evidence.header:
         there = providers.has_header(evidence.package, evidence.header, target.distro, version)
@@ -236,7 +228,7 @@ def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, p
 
 
 def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
-    released = _release_days().get(target.distro, "")
+    released = release_day(target.distro)
     if evidence.library:
         return released if holds and target.came_with_release(evidence.package) else ""
     if target.overridden(evidence.package):
@@ -259,8 +251,3 @@ def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Pro
             # Which of the versions before brought it, is not known; before the release nobody cares.
             since = max(day, begin) if not always and (not unknown or day <= begin) else "?"
     return since.rstrip("?")
-
-
-@cache
-def _release_days() -> dict[str, str]:
-    return {known.name: known.released for known in known_distros()}

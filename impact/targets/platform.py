@@ -1,37 +1,31 @@
-"""Platforms: their names, spelled one way, and the Python they bring."""
+"""Platforms: their names, spelled one way, and the Python they bring. The facts are in `data/platforms.json`."""
 
 import re
 from collections.abc import Collection
 
+import msgspec
+
+from .snapshot import DATA, read_table
 from .version import number_of
 
-CODENAMES: dict[str, str] = {
-    "ubuntu 12.04": "ubuntu precise",
-    "ubuntu 14.04": "ubuntu trusty",
-    "ubuntu 16.04": "ubuntu xenial",
-    "ubuntu 18.04": "ubuntu bionic",
-    "ubuntu 20.04": "ubuntu focal",
-    "ubuntu 22.04": "ubuntu jammy",
-    "ubuntu 24.04": "ubuntu noble",
-    "ubuntu 26.04": "ubuntu resolute",
-    "debian 8": "debian jessie",
-    "debian 9": "debian stretch",
-    "debian 10": "debian buster",
-    "debian 11": "debian bullseye",
-    "debian 12": "debian bookworm",
-    "debian 13": "debian trixie",
-}
-"""Release number → codename. Sources: releases.ubuntu.com, debian.org/releases."""
 
+class _Platforms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What the file holds. codenames: release number → codename. frozen: platforms in the order in which their packages
+    were frozen. other_systems: that ROS runs on and rosdep has no rules for. other_releases: of Debian by role, and of
+    Ubuntu between the long-term ones. library_aliases: other names under which people ask for a platform library."""
+
+    source: str
+    codenames: dict[str, str]
+    frozen: tuple[str, ...]
+    other_systems: str
+    other_releases: str
+    library_aliases: dict[str, str]
+
+
+_SHIPPED = read_table(DATA / "platforms.json", _Platforms)
+CODENAMES, _FROZEN = _SHIPPED.codenames, _SHIPPED.frozen
+OTHER_SYSTEMS, OTHER_RELEASES = frozenset(_SHIPPED.other_systems.split()), frozenset(_SHIPPED.other_releases.split())
 _KNOWN = {name.split()[1]: name for name in CODENAMES.values()}
-
-
-_FROZEN = (
-    *("ubuntu xenial", "debian stretch", "ubuntu bionic", "debian buster", "ubuntu focal", "debian bullseye"),
-    *("ubuntu jammy", "debian bookworm", "ubuntu noble", "debian trixie", "ubuntu resolute"),
-    *("debian forky", "debian sid"),
-)
-"""Platforms in the order in which their packages were frozen. Sources: releases.ubuntu.com, debian.org/releases."""
 
 
 def neighbours(platform: str, known: Collection[str]) -> tuple[str, str]:
@@ -69,20 +63,7 @@ def python_minor(version: str | None) -> int | None:
     return number_of(match.group(1)) if match else None
 
 
-LIBRARY_ALIASES: dict[str, str] = {
-    "python3": "python",
-    "eigen": "eigen3",
-    "opencv4": "opencv",
-    "g++": "gcc",
-    "qt5": "qt",
-    "yamlcpp": "yaml-cpp",
-    "yaml_cpp": "yaml-cpp",
-    "libboost": "boost",
-}
-"""Other names under which people ask for a platform library."""
-
-
 def library_name(name: str) -> str:
     """The name a platform library has in platform_versions.yaml."""
     lowered = name.lower()
-    return LIBRARY_ALIASES.get(lowered, lowered)
+    return _SHIPPED.library_aliases.get(lowered, lowered)

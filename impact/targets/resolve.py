@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import difflib
 import os
 import posixpath
 import re
@@ -20,8 +19,8 @@ from ..tree.ignore import git_folder
 from ..tree.paths import is_vendored
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import KnownDistro, known_distros, systems_of_rosdep
-from .platform import CODENAMES, library_name, normal_platform
+from .distro.known import KnownDistro, did_you_mean, known_distros, systems_of_rosdep
+from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, library_name, normal_platform
 from .snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -31,12 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
 
 _DPKG = ".dpkg.txt"
-_OTHER_SYSTEMS = frozenset(("conda-forge", "robostack", "macos", "windows"))
-"""Systems that ROS runs on and rosdep has no rules for."""
-_OTHER_RELEASES = frozenset(("sid", "unstable", "testing", "stable", "oldstable", "devel", "artful", "cosmic", "disco",
-                             "eoan", "groovy", "hirsute", "impish", "kinetic", "lunar", "mantic", "oracular", "plucky",
-                             "questing", "saucy", "utopic", "vivid", "wily", "yakkety", "zesty"))  # fmt: skip
-"""Releases of Debian by role, and of Ubuntu between the long-term ones. Source: releases.ubuntu.com."""
 _DOCKER = "docker:"
 _DATE = re.compile(r"\d{4}-\d\d?-\d\d?$")
 _LARGEST = 200_000
@@ -81,8 +74,7 @@ def parse_target(
 
 def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
     distros = [known.name for known in known_distros(data)]
-    close = difflib.get_close_matches(base, [*distros, *named], 1)
-    hint = f"; did you mean `{close[0]}`?" if close else "."
+    hint = did_you_mean(base, [*distros, *named], "; ") or "."
     own = f" Targets of rosimpact.toml: {', '.join(sorted(named))}." if named else ""
     if (folder / text).exists() and (folder == Path() or lies_in(folder / text, folder)):
         hint = f": a file is read as a target when its name ends in `.json` or `{_DPKG}`."
@@ -134,25 +126,20 @@ def _check_table(where: str, platform: str | None, versions: Mapping[str, str], 
     known = data.names("package") | data.names("library")
     for name in versions:
         if name not in known and library_name(name) not in known:
-            hint = _did_you_mean(name, known) or "a ROS package or a platform library is meant"
+            hint = did_you_mean(name, sorted(known)) or "a ROS package or a platform library is meant"
             raise TargetError(f"{where}: `versions` has an unknown name `{visible(name)}`; {hint}")
     words = normal_platform(platform or "").split()
     if not words:
         return
-    systems = systems_of_rosdep(data) | _OTHER_SYSTEMS
-    releases = {name.split()[1] for name in CODENAMES.values()} | _OTHER_RELEASES
+    systems = systems_of_rosdep(data) | OTHER_SYSTEMS
+    releases = {name.split()[1] for name in CODENAMES.values()} | OTHER_RELEASES
     if words[0] not in systems:
-        hint = _did_you_mean(words[0], systems | releases) or f"known systems: {', '.join(sorted(systems))}"
+        hint = did_you_mean(words[0], sorted(systems | releases)) or f"known systems: {', '.join(sorted(systems))}"
     elif words[0] in ("ubuntu", "debian") and words[1:2] and words[1].isalpha() and words[1] not in releases:
-        hint = _did_you_mean(words[1], releases) or f"known releases: {', '.join(sorted(releases))}"
+        hint = did_you_mean(words[1], sorted(releases)) or f"known releases: {', '.join(sorted(releases))}"
     else:
         return
     raise TargetError(f"{where}: unknown platform `{visible(str(platform))}`; {hint}")
-
-
-def _did_you_mean(name: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(name, sorted(known), 1)
-    return f"did you mean `{close[0]}`?" if close else ""
 
 
 def _captured(path: Path, text: str) -> DistroTarget:

@@ -1,19 +1,19 @@
 """The shipped snapshot of distro data: unpacked once into the user's cache, then read as SQLite.
 
-What is shipped: `data/distros.sqlite.zst` (tables below), `data/snapshot.json` (its date and content hash) and the
-reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same database when
-it is unpacked. The unpacked file is named after the content of all three, so a new version of the data never meets an
-old file. A file that turns out broken is unpacked again; where no folder can be written the database lives in memory.
+What is shipped: `data/distros.sqlite.zst` (its tables: databuild/write.py), `data/snapshot.json` (its date and content
+hash) and the reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same
+database when it is unpacked. The unpacked file is named after the content of all three, so a new version of the data
+never meets an old file. A file that turns out broken is unpacked again; where no folder can be written the database
+lives in memory.
 """
 
 import contextlib
 import datetime
-import hashlib
 import os
 import sqlite3
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import msgspec
 
@@ -21,41 +21,8 @@ from ...edges.files import read_file
 from ...edges.limits import limits
 from ...edges.memory import cached_method
 from ..cache import cache_folder
-from . import unpacked
-from .unpacked import SnapshotError
-
-T = TypeVar("T")
-
-SCHEMA = """
-CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
-CREATE TABLE distro(id INTEGER PRIMARY KEY, name TEXT UNIQUE, ros INTEGER, python INTEGER, status TEXT);
-CREATE TABLE platforms(distro INTEGER, ts INTEGER, names TEXT, PRIMARY KEY(distro, ts)) WITHOUT ROWID;
-CREATE TABLE sync(distro INTEGER, day TEXT, cut INTEGER, PRIMARY KEY(distro, day)) WITHOUT ROWID;
-CREATE TABLE repository(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
-CREATE TABLE package(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
-CREATE TABLE url(id INTEGER PRIMARY KEY, text TEXT);
-CREATE TABLE packages(id INTEGER PRIMARY KEY, names TEXT);
-CREATE TABLE release(distro INTEGER, repository INTEGER, ts INTEGER, version TEXT, packages INTEGER,
-    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
-CREATE TABLE home(package INTEGER, distro INTEGER, repository INTEGER,
-    PRIMARY KEY(package, distro, repository)) WITHOUT ROWID;
-CREATE TABLE source(distro INTEGER, repository INTEGER, ts INTEGER, url INTEGER, branch TEXT, status TEXT,
-    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
-CREATE TABLE manifest(distro INTEGER, package INTEGER, version TEXT, dependencies INTEGER, build_type TEXT,
-    PRIMARY KEY(distro, package, version)) WITHOUT ROWID;
-CREATE TABLE dependencies(id INTEGER PRIMARY KEY, entries TEXT);
-CREATE TABLE rule(key TEXT, os TEXT, ts INTEGER, rule TEXT, PRIMARY KEY(key, os, ts)) WITHOUT ROWID;
-"""
-"""Tables of the shipped database. `ts` and `cut` are seconds since 1970 (UTC) of a commit in rosdistro.
-
-release: what a repository released from that moment on; version NULL: nothing any more.
-packages: names, space separated. home: where a package was ever released.
-sync: on `day` apt got the packages as released at `cut`.
-platforms: names such as `ubuntu jammy`, comma separated, main one first.
-manifest: one row where a package's declared dependencies changed with a version. dependencies.entries: one line for
-each, tab separated: name, kinds (letters of KINDS), condition, bounds (`version_gte=1.2 version_lt=2`).
-rule: the rosdep rule of a key for an operating system as JSON; NULL: dropped.
-"""
+from .unpacked import AddFacts, ShippedDatabase, SnapshotError
+from .unpacked import read_table as read_table
 
 FACT_SCHEMA = """
 CREATE TABLE library(platform TEXT, name TEXT, version TEXT, source TEXT, PRIMARY KEY(platform, name)) WITHOUT ROWID;
@@ -80,7 +47,6 @@ KINDS = {
 """One letter for each kind of dependency, as stored in dependencies.entries."""
 
 DATA = Path(__file__).parent / "data"
-_FORMAT = 1
 
 
 class SnapshotInfo(msgspec.Struct, frozen=True):
@@ -105,29 +71,6 @@ def shipped_info(data: Path = DATA) -> SnapshotInfo:
         raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
 
 
-def read_table(path: Path, kind: type[T]) -> T:
-    """What a shipped file of JSON holds, packed (`.zst`) or not. Raises SnapshotError when it is missing or damaged."""
-    try:
-        raw = path.read_bytes()
-        return msgspec.json.decode(_decompress(raw) if path.suffix == ".zst" else raw, type=kind)
-    except (OSError, ValueError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
-
-
-def _decompress(packed: bytes) -> bytes:
-    import zstandard
-
-    try:
-        return zstandard.ZstdDecompressor().decompress(packed)
-    except zstandard.ZstdError as error:
-        raise ValueError(str(error)) from None
-
-
-def unpack(data: Path = DATA) -> bytes:
-    """The database as bytes, decompressed and checked against its hash, before the fact files are added."""
-    return unpacked.decompress(data / "distros.sqlite.zst", shipped_info(data).sha256, "snapshot.json")
-
-
 def data_stamp() -> tuple[tuple[str, int, int], ...]:
     """Sizes and times of the shipped data files; differs whenever one of them does."""
     with os.scandir(DATA) as entries:
@@ -138,13 +81,6 @@ def data_stamp() -> tuple[tuple[str, int, int], ...]:
 def updated_folder() -> Path:
     """Where `rosimpact data update` keeps what it made; it is used while it is newer than what is shipped."""
     return cache_folder() / "updated"
-
-
-def _fact_files(data: Path) -> tuple[bytes, bytes]:
-    try:
-        return (data / "platform_versions.yaml").read_bytes(), (data / "distros.yaml").read_bytes()
-    except OSError as error:
-        raise SnapshotError(f"{error}; install rosimpact again") from None
 
 
 def add_facts(connection: sqlite3.Connection, platforms: bytes, distros: bytes) -> None:
@@ -171,18 +107,15 @@ def add_facts(connection: sqlite3.Connection, platforms: bytes, distros: bytes) 
     connection.commit()
 
 
-class Snapshot:
-    """Read access to the database. Open one with `default()`, or `Snapshot(folder)` for another data folder.
+class Snapshot(ShippedDatabase):
+    """Read access to the database. Open one with `default()`, or `Snapshot(folder)` for another data folder."""
 
-    facts: the folder of the reviewed fact files. The file is opened at the first query. A database that breaks while it
-    is read is unpacked again, in memory.
-    """
+    kind, info_file, table = "distros", "snapshot.json", "distro_fact"
+    fact_files = ("platform_versions.yaml", "distros.yaml")
+    fill = staticmethod(add_facts)
 
     def __init__(self, data: Path = DATA, cache: Path | None = None, facts: Path = DATA):
-        self.data = data
-        self.facts = facts
-        self._cache = cache
-        self._file = unpacked.UnpackedFile(self._raw_and_facts, self.path, "distro_fact")
+        super().__init__(data, cache, facts)
         self._info: SnapshotInfo | None = None
 
     @property
@@ -196,10 +129,6 @@ class Snapshot:
         """Newest day of the data (ISO)."""
         return self.info.date
 
-    def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
-        """All rows of a query. Raises SnapshotError when the data cannot be read."""
-        return self._file.rows(sql, tuple(parameters))
-
     def row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
         """The first row of a query, None when there is none."""
         found = self.rows(sql, parameters)
@@ -210,24 +139,18 @@ class Snapshot:
         """All values of a column; read once, since every target asks the same."""
         return frozenset(value for (value,) in self.rows(f"SELECT DISTINCT {column} FROM {table}"))
 
-    def path(self) -> Path:
-        """Where the unpacked file belongs in the cache."""
-        facts = hashlib.sha256(b"\0".join(_fact_files(self.facts))).hexdigest()
-        folder = self._cache or cache_folder()
-        return folder / f"distros-{_FORMAT}-{self.info.sha256[:16]}-{facts[:16]}.sqlite"
+    def _sha256(self) -> str:
+        return self.info.sha256
 
-    def _raw_and_facts(self) -> tuple[bytes, unpacked.AddFacts]:
-        """What the file is made of: the database without the reviewed facts, and what adds them."""
+    def _contents(self) -> tuple[bytes, AddFacts]:
         try:
-            raw = unpack(self.data)
+            return super()._contents()
         except SnapshotError:
             if self.data != updated_folder():
                 raise
             # What an update left broken is passed over; the shipped data is always there.
             self.data, self._info = DATA, None
-            raw = unpack(self.data)
-        facts = _fact_files(self.facts)
-        return raw, lambda connection: add_facts(connection, *facts)
+            return super()._contents()
 
 
 _default: Snapshot | None = None

@@ -12,14 +12,19 @@ import sqlite3
 import stat
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
+from typing import Annotated, Any, ClassVar, TypeVar
+
+import msgspec
 
 from ...edges.console import UserError
 from ...edges.files import read_chunks, read_file, read_with_status, write_file
-from ..cache import CACHE_VARIABLE
+from ..cache import CACHE_VARIABLE, cache_folder
 from ..facts.store import FAULTS
 
+T = TypeVar("T")
 _STALE = 3600
 _SUM = ".sum"
 _SUM_BYTES = 1000
@@ -32,6 +37,31 @@ _UNPACKED_BYTES = 256 << 20
 
 class SnapshotError(UserError):
     """The shipped snapshot cannot be read; the message says what to do."""
+
+
+def read_table(path: Path, kind: type[T]) -> T:
+    """What a shipped file of JSON holds, packed (`.zst`) or not. Raises SnapshotError when it is missing or damaged."""
+    import zstandard
+
+    try:
+        raw = read_file(path, _PACKED_BYTES)
+        raw = zstandard.ZstdDecompressor().decompress(raw) if path.suffix == ".zst" else raw
+        return msgspec.json.decode(raw, type=kind)
+    except (OSError, ValueError, RecursionError, zstandard.ZstdError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+@cache
+def decoder_of(kind: Any) -> Callable[[bytes | msgspec.Raw], Any]:
+    """What reads MessagePack as a type."""
+    return msgspec.msgpack.Decoder(kind).decode
+
+
+def read_packed(data: bytes, kind: Any) -> Any:
+    """What databuild packed into a row, as MessagePack."""
+    import zstandard
+
+    return decoder_of(kind)(zstandard.ZstdDecompressor().decompress(data))
 
 
 def decompress(packed: Path, sha256: str, described: str) -> bytes:
@@ -54,25 +84,39 @@ def decompress(packed: Path, sha256: str, described: str) -> bytes:
     return raw
 
 
+class _Info(msgspec.Struct, frozen=True):
+    sha256: Annotated[str, msgspec.Meta(pattern=r"\A[0-9a-f]{16,}\Z")]
+
+
 # What adds the reviewed facts to a database.
 AddFacts = Callable[[sqlite3.Connection], None]
 
 
-class UnpackedFile:
+class ShippedDatabase:
     """A shipped database that is opened when it is first read; one that breaks while it is read is unpacked again, in
-    memory.
+    memory. data: its folder. cache: where to unpack it, by default the user's cache folder. facts: the folder of the
+    reviewed facts. What cannot be read raises SnapshotError."""
 
-    contents: gives its bytes, and what adds the reviewed facts to them. place: gives where the unpacked file belongs.
-    table: one that the facts fill. What these raise, reading raises."""
+    kind: str
+    """How the names of its files begin."""
+    info_file: str
+    """What tells the hash of the database."""
+    fact_files: tuple[str, ...]
+    table: str
+    """One that the facts fill."""
+    fill: ClassVar[Callable[..., None]]
+    """Adds what the files of reviewed facts hold to a connection."""
+    form = 1
 
-    def __init__(self, contents: Callable[[], tuple[bytes, AddFacts]], place: Callable[[], Path], table: str):
-        self._contents, self._place, self._table = contents, place, table
+    def __init__(self, data: Path, cache: Path | None, facts: Path):
+        self.data, self.facts, self._cache = data, facts, cache
         self._connection: sqlite3.Connection | None = None
         self._reader = 0  # the process that opened it
         self._lock = threading.Lock()
 
-    def rows(self, sql: str, arguments: Sequence[object] = ()) -> list[tuple]:
+    def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
         """All rows of a query."""
+        arguments = tuple(parameters)
         with self._lock:
             connection = self._open()
             try:
@@ -81,9 +125,33 @@ class UnpackedFile:
                 connection.close()
                 # Later runs compare the file with what was unpacked, however whole it looks.
                 with contextlib.suppress(OSError):
-                    os.unlink(f"{self._place()}{_SUM}")
+                    os.unlink(f"{self.path()}{_SUM}")
                 self._connection = _in_memory(*self._contents())
                 return self._connection.execute(sql, arguments).fetchall()
+
+    def path(self) -> Path:
+        """Where the unpacked file belongs in the cache."""
+        facts = hashlib.sha256(b"\0".join(self._read_facts())).hexdigest()
+        name = f"{self.kind}-{self.form}-{self._sha256()[:16]}-{facts[:16]}.sqlite"
+        return (self._cache or cache_folder()) / name
+
+    def unpack(self) -> bytes:
+        """The database as bytes, decompressed and checked against its hash, before the reviewed facts are added."""
+        return decompress(self.data / f"{self.kind}.sqlite.zst", self._sha256(), self.info_file)
+
+    def _contents(self) -> tuple[bytes, AddFacts]:
+        """What the file is made of: the database without the reviewed facts, and what adds them."""
+        raw, facts = self.unpack(), self._read_facts()
+        return raw, lambda connection: self.fill(connection, *facts)
+
+    def _sha256(self) -> str:
+        return read_table(self.data / self.info_file, _Info).sha256
+
+    def _read_facts(self) -> list[bytes]:
+        try:
+            return [(self.facts / name).read_bytes() for name in self.fact_files]
+        except OSError as error:
+            raise SnapshotError(f"{error}; install rosimpact again") from None
 
     def _open(self) -> sqlite3.Connection:
         """A connection of this process. In a forked one a file is opened anew: with its parent's connection both would
@@ -97,19 +165,19 @@ class UnpackedFile:
 
     def _open_whole(self) -> sqlite3.Connection | None:
         """The finished file; None when there is none or it is not whole."""
-        path = self._place()
+        path = self.path()
         try:
-            return _connect(path, self._table) if _is_whole(path) else None
+            return _connect(path, self.table) if _is_whole(path) else None
         except (OSError, *FAULTS):
             return None
 
     def _unpack(self) -> sqlite3.Connection:
         """Makes the file and opens it; in memory where it cannot be written."""
         raw, add_facts = self._contents()
-        path = self._place()
+        path = self.path()
         try:
             _write(raw, add_facts, path)
-            return _connect(path, self._table)
+            return _connect(path, self.table)
         except (OSError, *FAULTS):
             return _in_memory(raw, add_facts)
 

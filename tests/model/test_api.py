@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
+from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.cpp.surface import extract as header
@@ -11,7 +12,6 @@ from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type
 from rosimpact.impact.targets.surface.changes import unpack
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.

@@ -10,7 +10,7 @@ import pytest
 from rosimpact.databuild.manifest_tags import add, read_clone, read_release_clone
 from rosimpact.databuild.manifests import DeclaredVersion
 from rosimpact.databuild.surface.releases import Release
-from rosimpact.impact.targets.snapshot import SCHEMA
+from rosimpact.databuild.write import SCHEMA
 
 SIGNATURE = pygit2.Signature("Robots", "robots@example.org", 1_400_000_000, 0)
 

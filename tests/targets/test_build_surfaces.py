@@ -9,8 +9,9 @@ from rosimpact.databuild.jobs import Job, run
 from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import all_distros, build, plan
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.surface.changes import unpack
+from rosimpact.impact.targets.surface.changes import Line
 from rosimpact.impact.targets.surface.store import StoredSurfacesError, SurfaceHistory, Surfaces
+from rosimpact.impact.targets.unpacked import read_packed
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
 <maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>{made_by}</buildtool_depend>
@@ -138,7 +139,7 @@ def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
     ]
     packed = run(job).packages["rclcpp", 2]
     assert SurfaceHistory("rclcpp", packed.data, packed.includes).versions == (older, newer)
-    assert list(unpack(packed.changes).events["c++"]) == ["of_jazzy", "of_kilted"]
+    assert list(read_packed(packed.changes, Line).events["c++"]) == ["of_jazzy", "of_kilted"]
     assert missing == ()
 
 

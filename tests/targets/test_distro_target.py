@@ -216,10 +216,11 @@ def test_manifest_conditions(condition, expected):
 @pytest.mark.parametrize("value", ["", "a", "b", "c-d", "z"])
 def test_single_comparisons_agree_with_catkin_pkg(text, compare, value):
     from catkin_pkg.condition import evaluate_condition
-    from rosimpact.impact.targets.distro.distro import condition_holds
+    from rosimpact.impact.conditions import Environment
+    from rosimpact.impact.conditions.manifest import evaluate
 
-    condition = f"$V {compare} {text}"
-    assert condition_holds(condition, {"V": value}) == evaluate_condition(condition, {"V": value})
+    condition = f"${'ROS_DISTRO' if value else 'UNSET'} {compare} {text}"
+    assert evaluate(condition, Environment(value)) == evaluate_condition(condition, {"ROS_DISTRO": value})
 
 
 def test_version_bounds_are_kept():

@@ -122,7 +122,7 @@ class Store:
 @pytest.fixture
 def stored(monkeypatch):
     def put(one):
-        monkeypatch.setattr(module, "surfaces", lambda: Store(one))
+        monkeypatch.setattr(module, "shipped", lambda: Store(one))
 
     return put
 

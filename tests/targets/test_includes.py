@@ -6,6 +6,8 @@ import pytest
 from rosimpact.databuild.includes import Header as Read
 from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface.compare import RepositorySurfaces
+from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.providers.includes import (
@@ -16,8 +18,6 @@ from rosimpact.impact.targets.providers.includes import (
     machine_of,
     offered,
 )
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces
-from rosimpact.impact.targets.surface.includes import compiled
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 

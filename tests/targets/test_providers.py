@@ -5,9 +5,9 @@ import sqlite3
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.databuild.providers import cmake_names, include_paths, module_names
+from rosimpact.databuild.providers import SCHEMA, cmake_names, include_paths, module_names
 from rosimpact.databuild.surface.releases import plain_url, tag_of
-from rosimpact.impact.targets.providers.providers import SCHEMA, Providers, add_facts, default_providers
+from rosimpact.impact.targets.providers.providers import Providers, add_facts, default_providers
 from rosimpact.impact.targets.providers.stdlib import ever_stdlib, stdlib
 from rosimpact.impact.targets.snapshot import SnapshotError
 

@@ -5,12 +5,12 @@ import textwrap
 
 import pytest
 from rosimpact.databuild.surface.clones import Clone, Clones, VersionError
+from rosimpact.databuild.surface.compare import RepositorySurfaces, compare, compare_states
 from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.changes import PARAMETER
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare, compare_states
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -109,6 +109,14 @@ def test_a_renamed_header_names_its_successor(told):
         [files("arm", {"arm/a.h": "namespace arm { void f(); }"})],
         [files("arm", {"arm/a.hpp": "namespace arm { void f(); }"})],
     ) == ["c++ removed header arm/a.h -> arm/a.hpp", "c++ added header arm/a.hpp ok"]
+
+
+def test_a_header_that_warns_names_what_to_include(state):
+    headers = {"arm/a.hpp": "void f();", "arm/b.hpp": "void f();"}
+    warning = {**headers, "arm/b.hpp": '#warning obsolete, include arm/a.hpp\n#include "arm/a.hpp"\nvoid f();'}
+    before, after = (state(files("arm", each)) for each in (headers, warning))
+    (change,) = compare(before.surfaces["arm"], after.surfaces["arm"], before, after)
+    assert (change.kind, change.what, change.name, change.instead) == ("deprecated", "header", "arm/b.hpp", "arm/a.hpp")
 
 
 # How a name can still be there: old headers, new headers.

@@ -4,12 +4,12 @@ import textwrap
 
 import pytest
 from rosimpact.databuild.surface.build import KINDS, surface_of
+from rosimpact.databuild.surface.compare_build import compare
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.kinds import kind_of
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.build import compare
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.2.3</version><description>d</description>
@@ -258,7 +258,7 @@ def test_a_plain_cmake_package_with_a_configuration_of_its_own(surface):
 def test_compare(surface, old, new, expected):
     files = ["include/arm/a.hpp", "a.cpp"]
     changes = compare(surface(old, files), surface(new, files))
-    assert [(c.kind, c.what, c.name, c.now if c.sure else "unsure") for c in changes] == expected
+    assert [(c.kind, c.what, c.name, (c.now or c.instead) if c.sure == 1 else "unsure") for c in changes] == expected
 
 
 def test_launch_arguments_that_changed(surface):

@@ -2,16 +2,18 @@
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface.compare import RepositorySurfaces
+from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces
-from rosimpact.impact.targets.surface.includes import compiled, unpack
+from rosimpact.impact.targets.surface.includes import Included
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
+from rosimpact.impact.targets.unpacked import read_packed
 
 
 @pytest.mark.parametrize(
@@ -53,7 +55,7 @@ def test_each_version_includes_what_it_did():
     including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))])
     including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))])
     including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], True)
-    included = unpack(including.packed())
+    included = read_packed(including.packed(), Included)
     written = {version: included.written("arm/a.h", version) for version in ("1.0.0", "2.0.0", "3.0.0", "4.0.0")}
     assert {version: None if told is None else [one.path for one in told] for version, told in written.items()} == {
         "1.0.0": ["x", "y"],

@@ -7,10 +7,10 @@ import tarfile
 
 import pytest
 from rosimpact.databuild.surface.clones import VersionError
+from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
 from rosimpact.databuild.surface.installed import is_installed, surface_at
 from rosimpact.databuild.surface.package import surfaces_of
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.targets.surface.compare import RepositorySurfaces, compare
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.2.0</version><description>d</description>

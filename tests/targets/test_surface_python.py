@@ -3,13 +3,14 @@
 import textwrap
 
 import pytest
+from rosimpact.databuild.surface.compare_python import broken_by, compare
 from rosimpact.databuild.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, broken_by, compare, signature
+from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, signature
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>
@@ -145,7 +146,7 @@ def test_generated_and_compiled_modules_are_neither_there_nor_missing(package):
 
 def changes(surface, old, new):
     return [
-        (c.kind, c.name, *([c.now] if c.kind == "moved" else []), *([] if c.sure else ["unsure"]))
+        (c.kind, c.name, *([c.instead] if c.kind == "moved" else []), *([] if c.sure == 1 else ["unsure"]))
         for c in compare(surface(old), surface(new))
         if c.breaks or c.kind not in ("added", "signature")
     ]
@@ -191,7 +192,7 @@ def test_compare(surface, old, new, expected):
 
 def test_what_is_new_is_told(surface):
     old, new = surface({"a.py": "class A: pass"}), surface({"a.py": "class A:\n  def f(self): pass\ndef g(x): pass"})
-    assert [(c.kind, c.name, c.now) for c in compare(old, new)] == [
+    assert [(c.kind, c.name, c.now or c.instead) for c in compare(old, new)] == [
         ("added", "arm.a.A.f", "()"),
         ("added", "arm.a.g", "(x)"),
     ]

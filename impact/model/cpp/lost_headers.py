@@ -104,8 +104,9 @@ def _find_lost(
     # To a type that is announced, pointers may be made.
     pointed = 0 if need.whole or standard else machine.bits(announced(need.name))
     for reach, own in reaches:
-        brought = machine.brings(need.name, reach, year) if standard else bits & machine.mask(reach)
-        if brought or not wanted.isdisjoint(own):
+        if not wanted.isdisjoint(own):
+            continue
+        if machine.brings(need.name, reach, year) if standard else machine.brings_any(bits, reach):
             continue
         if need.name in _EXTENDED and any(package_of(header, machine.ros) is None for header in own):
             continue  # another package of the workspace may have added one
@@ -164,8 +165,9 @@ def _find_dropped(
 ) -> tuple[str, str] | None:
     """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
     for before in earlier:
+        bits = before.bits(wanted)
         for header in sorted(reach):
-            if not wanted.isdisjoint(before.brought(header).headers):
+            if bits & before.mask(frozenset((header,))):
                 if view.is_standard(header):
                     return "gcc", machine.version("gcc") or ""
                 return machine.owner(header)

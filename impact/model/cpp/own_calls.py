@@ -30,7 +30,7 @@ def list_own_calls(
     pairs = []
     for path, targets in sources.items():
         own = own_header[path]
-        if not targets or not (reached := reach.masks(path)[0] & with_source & ~reach.bit(own)):
+        if not targets or not (reached := reach.masks((path,))[0] & with_source & ~reach.bit(own)):
             continue
         direct, words = {*included(path), *(included(own) if own else ())}, {_plain(word) for word in spoken(path)}
         for header in reach.names(reached):

@@ -9,24 +9,24 @@ from __future__ import annotations
 
 import datetime
 import functools
-import operator
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
-
-import msgspec
 
 from ....edges.console import UserError
 from ....edges.memory import cached_method
 from ....edges.reach import walk
+from ...conditions import Environment
+from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
 from ..version import number_of
 from .conda import CHANNELS, libraries_of
-from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros, systems_of_rosdep
+from .known import _upstream, day_of, did_you_mean, end_of_day, find_distro, known_distros, systems_of_rosdep
 from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
 
 if TYPE_CHECKING:
@@ -42,6 +42,16 @@ class Library(NamedTuple):
 
     version: str
     source: str
+
+
+class _Recipe(NamedTuple):
+    """What a target was asked for with."""
+
+    distro: str
+    date: str | None
+    platform: str | None
+    versions: dict[str, str]
+    name: str | None
 
 
 class _Released(NamedTuple):
@@ -123,19 +133,17 @@ class DistroTarget:
     ):
         self._data = data or snapshots.default()
         self._neighbours: dict[str, DistroTarget] = {}
-        self._asked = (distro, date, platform, dict(versions or {}), name)
+        self._asked = _Recipe(distro, date, platform, dict(versions or {}), name)
         self._rules = dict(rules or {})
-        row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
-        if row is None:
+        known = find_distro(distro, self._data)
+        if known is None:
             raise TargetError(_unknown_distro(distro, self._data))
-        self._id, self.ros, self.python_major = row
+        self._id, self.ros, self.python_major = known.number, known.ros, known.python
         self.distro = distro
         self.data_date = self._data.date
         self._overrides = {key: str(value) for key, value in (versions or {}).items()}
         self._own_libraries = {library_name(key): value for key, value in self._overrides.items()}
-        self._facts = _facts(distro, self._data)
-        self.end_of_life = (self._facts.end_of_life or "") if self._facts else ""
-        self.lts = bool(self._facts and self._facts.lts)
+        self._facts, self.end_of_life, self.lts = known.facts, known.end_of_life, known.lts
         notes: list[str] = []
         self.date = self._place_date(date, notes)
         self._cut, self.approximate = self._availability()
@@ -147,13 +155,12 @@ class DistroTarget:
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
-        distro, date, platform, versions, name = self._asked
-        return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
+        return DistroTarget, (*self._asked, None, self._rules)
 
     def identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
-        return repr((self._asked, *known, snapshots.data_stamp()))
+        return repr((tuple(self._asked), *known, snapshots.data_stamp()))
 
     def changed(
         self,
@@ -163,22 +170,16 @@ class DistroTarget:
         name: str | None = None,
     ) -> DistroTarget:
         """This target with another date, platform or name, and further versions on top of its own."""
-        distro, old_date, old_platform, old_versions, old_name = self._asked
-        return DistroTarget(
-            distro,
-            date or old_date,
-            platform or old_platform,
-            {**old_versions, **(versions or {})},
-            name or old_name,
-            self._data,
-            self._rules,
-        )
+        own = self._asked
+        mixed = {**own.versions, **(versions or {})}
+        recipe = _Recipe(own.distro, date or own.date, platform or own.platform, mixed, name or own.name)
+        return DistroTarget(*recipe, self._data, self._rules)
 
     def surrounded(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
         """This target with packages and rosdep rules that its machine has besides the public ones. A version that the
         target itself gives for a package stays."""
-        distro, date, platform, own, name = self._asked
-        return DistroTarget(distro, date, platform, {**versions, **own}, name, self._data, {**rules, **self._rules})
+        recipe = self._asked._replace(versions={**versions, **self._asked.versions})
+        return DistroTarget(*recipe, self._data, {**rules, **self._rules})
 
     def _place_date(self, date: str | None, notes: list[str]) -> str:
         if date is None:
@@ -343,40 +344,33 @@ class DistroTarget:
             return None
         return tuple(found for condition, found in _read_entries(manifest[0]) if not condition or self.holds(condition))
 
-    def _manifest(self, package: str) -> tuple[str, str] | None:
-        version = self.version(package)
-        if version is None:
-            return None
+    def _manifests(self, package: str) -> list[tuple[list[int], str, str]]:
+        """What is known of the manifests of a package in this distro, by their versions, oldest first: dependencies as
+        they are stored, and the build type."""
         rows = self._data.rows(
             "SELECT m.version, d.entries, m.build_type FROM manifest m JOIN package p ON p.id = m.package"
             " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
             (package, self._id),
         )
-        if not rows:
+        keyed = [(version_key(known), entries or "", build or "") for known, entries, build in rows]
+        return sorted(keyed, key=itemgetter(0))
+
+    def _manifest(self, package: str) -> tuple[str, str] | None:
+        version = self.version(package)
+        known = self._manifests(package) if version is not None else []
+        if version is None or not known:
             return None
         wanted = version_key(version)
-        keyed = [(version_key(known), entries, build) for known, entries, build in rows]
-        keyed.sort(key=lambda row: row[0])
-        chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
-        return chosen[1] or "", chosen[2] or ""
+        _, entries, build = next((row for row in reversed(known) if row[0] <= wanted), known[0])
+        return entries, build
 
     def later_dependencies(self, package: str) -> frozenset[str]:
         """Names that come along with the next later version whose manifest is known here, where this very version's is
         not known: what dependencies() may lack."""
         version = self.version(package)
-        if version is None:
-            return frozenset()
-        known = {
-            tuple(version_key(of)): entries or ""
-            for of, entries in self._data.rows(
-                "SELECT m.version, d.entries FROM manifest m JOIN package p ON p.id = m.package"
-                " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
-                (package, self._id),
-            )
-        }
-        wanted = tuple(version_key(version))
-        later = min((key for key in known if key > wanted), default=None)
-        return frozenset() if wanted in known or later is None else _come_along(known[later])
+        wanted = version_key(version or "")
+        known = [(of, entries) for of, entries, _ in self._manifests(package) if of >= wanted] if version else []
+        return _come_along(known[0][1]) if known and known[0][0] != wanted else frozenset()
 
     def build_type(self, package: str) -> str:
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
@@ -459,6 +453,7 @@ class DistroTarget:
         near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
         return [name for name in near if name != self.distro]
 
+    @cached_method
     def _distros_with(self, package: str) -> frozenset[str]:
         """Distros of this generation that have ever released a package."""
         if not self.ever_released(package):
@@ -473,15 +468,8 @@ class DistroTarget:
     @cached_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
-        return condition_holds(condition, self._variables)
-
-    @property
-    def _variables(self) -> dict[str, str]:
-        return {
-            "ROS_VERSION": str(self.ros),
-            "ROS_DISTRO": self.distro,
-            "ROS_PYTHON_VERSION": str(self.python_major),
-        }
+        here = Environment(self.distro, str(self.ros), (self.python_major, 0))
+        return bool(condition) and evaluate(condition, here) is True
 
     def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
         """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
@@ -512,14 +500,10 @@ class DistroTarget:
             if system in self._rules.get(key, ()):
                 return resolve_rule(self._rules[key][system], os_name, release)
         # Some keys stand for every operating system under the name `*`.
-        for system in (os_name, "*"):
-            row = self._data.row(
-                "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
-                (key, system, ts),
-            )
-            if row and row[0] is not None:
-                return resolve_rule(decode_rule(row[0]), os_name, release)
-        return None
+        asked = "SELECT os, rule FROM rule WHERE key = ? AND os IN (?, '*') AND ts <= ? ORDER BY ts"
+        newest = dict(self._data.rows(asked, (key, os_name, ts)))
+        rule = next((newest[one] for one in (os_name, "*") if newest.get(one) is not None), None)
+        return resolve_rule(decode_rule(rule), os_name, release) if rule is not None else None
 
     def known_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""
@@ -671,80 +655,22 @@ class DistroTarget:
         return self._changes
 
 
-_COMPARISON = re.compile(r"""\s*\$(\w+)\s*(==|!=|<=|>=|<|>)\s*(?:([\w-]+)|"([^"]*)"|'([^']*)')\s*$""")
-_COMPARE = {
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
-
-
-_TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
-
-
 def _come_along(entries: str) -> frozenset[str]:
     """The names among the stored entries of a manifest that are installed along with it, conditions aside."""
     fields = (line.split("\t") for line in entries.splitlines())
     return frozenset(name for name, letters, *_ in fields if not _COMES_ALONG.isdisjoint(letters))
 
 
-def _compared(term: str, variables: Mapping[str, str]) -> bool | None:
-    """One comparison, None when it is none of a variable with a text."""
-    term = term.strip()
-    simple = _COMPARISON.match(term)
-    if simple is None:
-        turned = _TURNED.match(term)
-        if turned is None:
-            return None
-        return bool(_COMPARE[turned[2]](turned[1], variables.get(turned[3], "")))
-    name, compare, *values = simple.groups()
-    return bool(_COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None)))
-
-
-def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
-    """A manifest condition by REP 149: texts are compared, an unset variable is empty.
-
-    Comparisons in a row, as most conditions are, are done here: catkin_pkg's parser costs 60 ms to load.
-    """
-    if "(" not in condition:
-        # `and` binds closer than `or`.
-        terms = [
-            [_compared(term, variables) for term in re.split(r"\band\b", part)]
-            for part in re.split(r"\bor\b", condition)
-        ]
-        if not any(term is None for part in terms for term in part):
-            return any(all(part) for part in terms)
-    from catkin_pkg.condition import evaluate_condition
-
-    try:
-        return bool(evaluate_condition(condition, variables))
-    except Exception:
-        return False
-
-
 @functools.cache
 def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
-    known = known_distros(data)
-    here = next((k for k in known if k.name == distro), None)
+    here = find_distro(distro, data)
     if here is None:
         return None
-    lasting = [k for k in known if k.ros == here.ros and k.lts]
+    lasting = [k for k in known_distros(data) if k.ros == here.ros and k.lts]
     last = lasting[-1] if lasting else None
     return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
 
 
-def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
-    row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
-    return msgspec.json.decode(row[0], type=DistroFacts) if row else None
-
-
 def _unknown_distro(name: str, data: Snapshot) -> str:
-    import difflib
-
     names = [known.name for known in known_distros(data)]
-    close = difflib.get_close_matches(name, names, 1)
-    hint = f"; did you mean `{close[0]}`?" if close else "."
-    return f"unknown distro `{name}`{hint} Known: {', '.join(names)}"
+    return f"unknown distro `{name}`{did_you_mean(name, names, '; ') or '.'} Known: {', '.join(names)}"

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import datetime
 import functools
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import msgspec
 
 from .. import snapshot as snapshots
 from ..snapshot import Snapshot
-
-if TYPE_CHECKING:
-    pass
 
 
 class DistroFacts(msgspec.Struct, frozen=True):
@@ -27,8 +25,10 @@ class DistroFacts(msgspec.Struct, frozen=True):
 
 
 class KnownDistro(NamedTuple):
-    """One distro of the snapshot in brief: first_day and last_day bound the releases known."""
+    """One distro of the snapshot in brief. number: in the tables. released: the day of its first release where nobody
+    says more; end_of_life: empty when none is set."""
 
+    number: int
     name: str
     ros: int
     python: int
@@ -36,38 +36,47 @@ class KnownDistro(NamedTuple):
     released: str
     end_of_life: str
     lts: bool
-    first_day: str
-    last_day: str
+    facts: DistroFacts | None
 
 
 def known_distros(data: Snapshot | None = None) -> tuple[KnownDistro, ...]:
     """All distros of the snapshot, oldest first."""
-    return _known_distros(data or snapshots.default())
+    return tuple(_known_distros(data or snapshots.default()).values())
+
+
+def find_distro(name: str, data: Snapshot | None = None) -> KnownDistro | None:
+    """The distro of this name."""
+    return _known_distros(data or snapshots.default()).get(name)
+
+
+def did_you_mean(name: str, known: Iterable[str], before: str = "") -> str:
+    """A question about a name that is none, after some text; empty where nothing is called like it."""
+    import difflib
+
+    close = difflib.get_close_matches(name, list(known), 1)
+    return f"{before}did you mean `{close[0]}`?" if close else ""
+
+
+def release_day(distro: str) -> str:
+    """The ISO day of a distro's release; empty when the data does not tell."""
+    known = find_distro(distro)
+    return known.released if known is not None else ""
 
 
 @functools.lru_cache(maxsize=4)
-def _known_distros(data: Snapshot) -> tuple[KnownDistro, ...]:
-    facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
+def _known_distros(data: Snapshot) -> dict[str, KnownDistro]:
+    told = data.rows("SELECT name, facts FROM distro_fact")
+    facts = {name: msgspec.json.decode(text, type=DistroFacts) for name, text in told}
     found = []
-    for name, ros, python, status, first, last in data.rows(
-        "SELECT name, ros, python, status, first, last FROM distro LEFT JOIN"
-        " (SELECT distro, min(ts) AS first, max(ts) AS last FROM release GROUP BY distro) ON distro = id ORDER BY id"
+    for number, name, ros, python, status, first in data.rows(
+        "SELECT id, name, ros, python, status, min(ts) FROM distro LEFT JOIN release ON distro = id"
+        " GROUP BY id ORDER BY id"
     ):
-        fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
-        found.append(
-            KnownDistro(
-                name,
-                ros,
-                python,
-                status,
-                fact.released if fact else day_of(first) if first else "",
-                (fact.end_of_life or "") if fact else "",
-                fact.lts if fact else False,
-                day_of(first) if first else "",
-                day_of(last) if last else "",
-            )
-        )
-    return tuple(sorted(found, key=lambda known: known.released))
+        fact = facts.get(name)
+        released = fact.released if fact else day_of(first) if first else ""
+        end, lts = (fact.end_of_life or "", fact.lts) if fact else ("", False)
+        found.append(KnownDistro(number, name, ros, python, status, released, end, lts, fact))
+    return {known.name: known for known in sorted(found, key=lambda known: known.released)}
 
 
 def releases(package: str) -> frozenset[tuple[int, str]]:

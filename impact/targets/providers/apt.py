@@ -55,14 +55,20 @@ class Apt:
     @cached_method
     def bringing(self, packages: frozenset[str]) -> frozenset[str]:
         """These packages and all that bring one of them along."""
+        places = [place for name in packages if (place := self._place.get(name)) is not None]
+        found = walk(places, lambda one: self._brought_with.get(one, ()))
+        return packages.union(self._graph.packages[place] for place in found)
+
+    @cached_property
+    def _brought_with(self) -> dict[int, list[int]]:
+        """Packages to those that bring them along."""
         mask = self._mask | (INFERRED if self._inferred else 0)
-        back: dict[int, list[int]] = {}
+        found: dict[int, list[int]] = {}
         for place, others in self._graph.brings.items():
             for other, bits in others:
                 if bits & mask:
-                    back.setdefault(other, []).append(place)
-        places = [place for name in packages if (place := self._place.get(name)) is not None]
-        return packages.union(self._graph.packages[place] for place in walk(places, lambda one: back.get(one, ())))
+                    found.setdefault(other, []).append(place)
+        return found
 
     def _brought_by(self, package: str) -> Iterator[str]:
         yield package

@@ -20,7 +20,7 @@ from ..snapshot import DATA, read_table
 from ..version import at_least, parts
 from . import message_headers
 from .libraries import system_libraries
-from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
+from .standard import DEFINED_IN, bit_of, brought_by, headers_naming, named_by, oldest
 
 if TYPE_CHECKING:
     from ...conditions import Environment
@@ -190,6 +190,7 @@ class HeadersOfMachine:
         found = self._find(header)
         return None if found is None else found.includes
 
+    @cached_method
     def always_included(self, header: str) -> tuple[str, ...]:
         """What a header of a ROS package includes under no condition; nothing where that is not known."""
         for package in self.surfaces.holders(header):
@@ -338,7 +339,7 @@ class HeadersOfMachine:
     @cached_method
     def brought(self, header: str) -> Brought:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
-        reached, along = self._reach.masks(header)
+        reached, along = self._reach.masks((header,))
         parts = (reached | along, reached & self._unknown, reached & self._plain)
         return Brought(*(frozenset(self._reach.names(mask)) for mask in parts))
 
@@ -348,7 +349,7 @@ class HeadersOfMachine:
         if found is not None:
             return found, ()
         standard = brought_by(header, self.gcc)
-        if named_by(header, self.gcc, 2017) is not None:
+        if _is_plain(header, self.gcc):
             self._plain |= self._reach.bit(header)
         elif len(standard) == 1:
             self._unknown |= self._reach.bit(header)
@@ -357,31 +358,36 @@ class HeadersOfMachine:
     @cached_method
     def _masks_of(self, headers: frozenset[str]) -> tuple[int, int]:
         """The headers that these lead to, and with them those that standard ones among them read."""
-        reached = whole = 0
-        for header in headers:
-            alone, along = self._reach.masks(header)
-            reached |= alone
-            whole |= along
-        return reached, whole | reached
+        reached, along = self._reach.masks(headers)
+        return reached, along | reached
+
+    @cached_method
+    def _followed(self, headers: frozenset[str]) -> tuple[int, int]:
+        """The same as far as it was known when it was first asked for: most files get what they need from headers that
+        were followed for others, so that those that nobody else includes need not be."""
+        reached, along = self._reach.known(headers)
+        return reached, along | reached
 
     def mask(self, headers: frozenset[str]) -> int:
         """Everything that these headers bring along here, as bits() has it."""
         return self._masks_of(headers)[1]
 
-    @cached_method
-    def named(self, headers: frozenset[str], standard: int) -> int:
-        """The names of the standard libraries that these headers bring along here, as bits of standard.bit_of().
+    def brings_any(self, bits: int, headers: frozenset[str]) -> bool:
+        """Whether these headers bring one of others along here, which are given as bits() has them."""
+        return bool(bits & self._followed(headers)[1] or bits & self.mask(headers))
 
-        standard: year of the C++ standard that they are compiled under."""
-        known = 0
-        reached, _ = self._masks_of(headers)
-        for header in self._reach.names(reached & self._plain):
-            known |= named_by(header, self.gcc, standard) or 0
-        return known
+    @cached_method
+    def _naming(self, name: str, standard: int) -> int:
+        """The standard headers that a name of the standard libraries is in here, as bits() has them."""
+        named = headers_naming(name, self.gcc, standard)
+        return self.bits(one for one in named if _is_plain(one, self.gcc) and self.includes(one) is None)
 
     def brings(self, name: str, headers: frozenset[str], standard: int) -> bool:
-        """Whether these headers bring a name of the standard libraries along here, as far as that can be excluded."""
-        if bit_of(name) & self.named(headers, standard):
+        """Whether these headers bring a name of the standard libraries along here, as far as that can be excluded.
+
+        standard: year of the C++ standard that they are compiled under."""
+        naming = self._naming(name, standard)
+        if naming & self._followed(headers)[0] or naming & self._masks_of(headers)[0]:
             return True
         if self.names(name):
             return self.gcc < oldest() and bool(self.bits(DEFINED_IN[name]) & self.mask(headers))
@@ -418,6 +424,11 @@ class HeadersOfMachine:
     def bits(self, headers: Iterable[str]) -> int:
         """One bit for each of these headers, the same in all answers of this machine."""
         return self._reach.bits(headers)
+
+
+def _is_plain(header: str, gcc: int) -> bool:
+    """Whether it is known of a header of the standard libraries which names it brings."""
+    return named_by(header, gcc, 2017) is not None
 
 
 def machine(target: DistroTarget) -> HeadersOfMachine:

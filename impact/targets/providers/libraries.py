@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from functools import cache, lru_cache, partial
-from itertools import islice, pairwise
+from functools import cache, cached_property, lru_cache, partial
+from itertools import chain, islice, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
-import zstandard
 
 from ....edges.memory import cached_method
 from ...facts.cpp.lexical import Include
@@ -23,6 +22,7 @@ from ..platform import neighbours
 from ..snapshot import DATA, SnapshotError
 from ..surface.includes import path_of, there
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
+from ..unpacked import read_packed
 from ..version import parts
 from .providers import default_providers
 
@@ -67,9 +67,6 @@ class HeaderBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     every: tuple[Include, ...]
     headers: dict[str, tuple[HeaderState, ...]]
-
-
-_decode_block = msgspec.msgpack.Decoder(HeaderBlock).decode
 
 
 class SystemLibraries:
@@ -122,11 +119,16 @@ class SystemLibraries:
     @cached_method
     def of_header(self, header: str) -> str:
         """The library that has a header in some version; empty for none that was read."""
-        if stray := self._first("SELECT library FROM header WHERE name = ?", header):
+        if stray := self._strays.get(header):
             return stray
         providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
         nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
         return next((library for library in nearest if self.has(library, header)), "")
+
+    @cached_property
+    def _strays(self) -> dict[str, str]:
+        """Headers that no list of files leads to, with their libraries."""
+        return dict(self._file.rows("SELECT name, library FROM header"))
 
     def has(self, library: str, header: str) -> bool:
         """Whether some version of a library has a header."""
@@ -148,7 +150,7 @@ class SystemLibraries:
     @lru_cache(maxsize=64)  # noqa: B019
     def _block(self, library: str, start: str) -> HeaderBlock:
         (data,) = self._file.columns("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
-        return _decode_block(zstandard.ZstdDecompressor().decompress(data))
+        return read_packed(data, HeaderBlock)
 
     def _state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
         """The same with the one state that it has in a version; None where the version has no such header."""
@@ -174,17 +176,19 @@ class SystemLibraries:
         before, after = self.around(library, platform) if library else ("", "")
         if not (before and after):
             return None
-        found: dict[str, None] = {}
-        known = False
-        for version in (before, after):
-            for path in _written(header, self._roots(library)):
-                if (stored := self._state(library, version, path)) is not None:
-                    every, state = stored
-                    has = partial(self._state, library, version)
-                    found.update((path_of(every[number], path, has), None) for number in state.includes)
-                    known = True
-                    break
-        return Including(library, before, tuple(found)) if known else None
+        found = [self._included_in(library, version, header) for version in (before, after)]
+        known = [paths for paths in found if paths is not None]
+        return Including(library, before, tuple(dict.fromkeys(chain(*known)))) if known else None
+
+    @cached_method
+    def _included_in(self, library: str, version: str, header: str) -> tuple[str, ...] | None:
+        """What a header includes in a version of its library; None where that has it not."""
+        for path in _written(header, self._roots(library)):
+            if (stored := self._state(library, version, path)) is not None:
+                every, state = stored
+                has = partial(self._state, library, version)
+                return tuple(path_of(every[number], path, has) for number in state.includes)
+        return None
 
     @cached_method
     def _roots(self, library: str) -> tuple[str, ...]:

@@ -1,50 +1,23 @@
 """Who provides a header, CMake package, pkg-config file, Python module or program: looked up in the shipped table.
 
-The table (`data/providers.sqlite.zst`, made by build_providers.py) is unpacked once into the user's cache and read as
-SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
+The table (`data/providers.sqlite.zst`, made by databuild/providers.py) is unpacked once into the user's cache and read
+as SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
 remembers it.
 """
 
-import hashlib
 import sqlite3
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-
 from ....edges.memory import cached_method
-from ...cache import cache_folder
-from .. import unpacked
-from ..snapshot import DATA, SnapshotError, read_table
+from ..snapshot import DATA, read_table
 from ..target import Provider
+from ..unpacked import ShippedDatabase
 from ..version import parts
 
 __all__ = ["HeaderSpan", "Providers", "default_providers"]
-
-SCHEMA = """
-CREATE TABLE platform(bit INTEGER PRIMARY KEY, name TEXT);
-CREATE TABLE provider(id INTEGER PRIMARY KEY, entries TEXT);
-CREATE TABLE header(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE cmake(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE pkgconfig(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE module(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE program(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
-CREATE TABLE pattern(id INTEGER PRIMARY KEY, spans TEXT);
-CREATE TABLE ros_header(path TEXT, package TEXT, pattern INTEGER, PRIMARY KEY(path, package)) WITHOUT ROWID;
-CREATE TABLE ros_package(name TEXT PRIMARY KEY, pattern INTEGER) WITHOUT ROWID;
-CREATE TABLE ros_module(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
-CREATE TABLE ros_cmake(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
-"""
-"""Tables of the shipped database.
-
-provider.entries: one line for each provider, best first: a rosdep key and, where it differs, the Debian package that it
-installs; an empty line stands for the C library and compiler. platforms: bits of the platforms that have the name.
-pattern.spans: one line for each unbroken run of releases: distro, first version, last version (`-` when the newest
-release known still counts). ros_header: where a package's header is. ros_package: the releases whose trees were read.
-ros_module, ros_cmake: packages, space separated.
-"""
 
 FACT_SCHEMA = """
 CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;
@@ -56,7 +29,6 @@ CREATE INDEX ros_header_of ON ros_header(package, pattern);
 BY_FOLDER = 1 << 30
 """Bit in header.platforms: a bare file name that is found only where a package's own folder is on the include path."""
 
-_FORMAT = 2
 _LIBC = Provider("system", "", "")
 
 
@@ -68,18 +40,36 @@ class HeaderSpan(NamedTuple):
     last: str | None
 
 
-class Providers:
-    """Lookups in the shipped table. data: its folder. cache: where to unpack it, by default the user's cache folder.
+def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
+    """Loads data/providers.yaml: kind, name, then providers (`key`, `key debian-package`, `ros:package`, empty)."""
+    import yaml
 
-    Raises SnapshotError at the first lookup when the table is missing or damaged.
-    """
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    tables = yaml.load(facts, Loader=loader) or {}
+    connection.executescript(FACT_SCHEMA)
+    connection.executemany(
+        "INSERT INTO fact VALUES(?, ?, ?)",
+        (
+            (kind, str(name), "\n".join([providers] if isinstance(providers, str) else providers))
+            for kind, names in tables.items()
+            for name, providers in names.items()
+        ),
+    )
+    connection.commit()
+
+
+class Providers(ShippedDatabase):
+    """Lookups in the shipped table."""
+
+    kind, info_file, fact_files, table = "providers", "providers.json", ("providers.yaml",), "fact"
+    form = 2
+    fill = staticmethod(add_facts)
 
     def __init__(self, data: Path = DATA, cache: Path | None = None):
-        self._data, self._cache = data, cache
-        self._file = unpacked.UnpackedFile(self._contents, self._place, "fact")
+        super().__init__(data, cache, data)
 
     def __reduce__(self):
-        return Providers, (self._data, self._cache)
+        return Providers, (self.data, self._cache)
 
     @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
@@ -140,13 +130,13 @@ class Providers:
     @cached_property
     def _find_modules(self) -> dict[str, dict[str, list[str]]]:
         """What CMake's find modules look for, see databuild/find_modules.py."""
-        return read_table(self._data / "find_modules.json", dict[str, dict[str, list[str]]])
+        return read_table(self.data / "find_modules.json", dict[str, dict[str, list[str]]])
 
     @cached_property
     def commands(self) -> dict[int, dict[str, str]]:
         """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
         databuild/commands.py."""
-        return read_table(self._data / "commands.json", dict[int, dict[str, str]])
+        return read_table(self.data / "commands.json", dict[int, dict[str, str]])
 
     def spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
@@ -224,9 +214,8 @@ class Providers:
 
         Only releases whose source tree was read count; known_releases tells which.
         """
-        for (number,) in self._rows("SELECT pattern FROM ros_header WHERE path = ? AND package = ?", header, package):
-            return self._pattern(number)
-        return ()
+        number = self._headers_of(package).get(header)
+        return self._pattern(number) if number is not None else ()
 
     @cached_method
     def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
@@ -244,12 +233,13 @@ class Providers:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
         if not _within(self.known_releases(package), distro, version):
             return None
-        return any(_within(self._pattern(number), distro, version) for number in self._patterns(package))
+        patterns = {*self._headers_of(package).values()}
+        return any(_within(self._pattern(number), distro, version) for number in patterns)
 
     @cached_method
-    def _patterns(self, package: str) -> list[int]:
-        rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
-        return [number for (number,) in rows]
+    def _headers_of(self, package: str) -> dict[str, int]:
+        """The headers that a ROS package ever had, with their patterns."""
+        return dict(self._rows("SELECT path, pattern FROM ros_header WHERE package = ?", package))
 
     def _vendors(self, key: str) -> list[Provider]:
         return self._facts("vendor", key)
@@ -321,25 +311,7 @@ class Providers:
         return found
 
     def _rows(self, sql: str, *arguments: object) -> list[tuple]:
-        return self._file.rows(sql, arguments)
-
-    def _contents(self) -> tuple[bytes, unpacked.AddFacts]:
-        sha, facts = self._read_info()
-        raw = unpacked.decompress(self._data / "providers.sqlite.zst", sha, "providers.json")
-        return raw, lambda connection: add_facts(connection, facts)
-
-    def _place(self) -> Path:
-        sha, facts = self._read_info()
-        name = f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite"
-        return (self._cache or cache_folder()) / name
-
-    def _read_info(self) -> tuple[str, bytes]:
-        """The hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
-        sha256 = read_table(self._data / "providers.json", _Info).sha256
-        try:
-            return sha256, (self._data / "providers.yaml").read_bytes()
-        except OSError as error:
-            raise SnapshotError(f"{error}; install rosimpact again") from None
+        return self.rows(sql, arguments)
 
 
 def _once(providers: list[Provider]) -> list[Provider]:
@@ -369,28 +341,6 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
         span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
         for span in spans
     )
-
-
-class _Info(msgspec.Struct, frozen=True):
-    sha256: str
-
-
-def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
-    """Loads data/providers.yaml: kind, name, then providers (`key`, `key debian-package`, `ros:package`, empty)."""
-    import yaml
-
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    tables = yaml.load(facts, Loader=loader) or {}
-    connection.executescript(FACT_SCHEMA)
-    connection.executemany(
-        "INSERT INTO fact VALUES(?, ?, ?)",
-        (
-            (kind, str(name), "\n".join([providers] if isinstance(providers, str) else providers))
-            for kind, names in tables.items()
-            for name, providers in names.items()
-        ),
-    )
-    connection.commit()
 
 
 _default: Providers | None = None

@@ -146,29 +146,26 @@ def bit_of(name: str) -> int:
     return _places().get(name, 0)
 
 
-@cache
 def named_by(header: str, gcc: int, standard: int) -> int | None:
     """The names that a header brings alone, as bits; None for a header that is not known.
 
     gcc: major version; one that is not known is answered as the nearest older one, or the oldest. standard: year of the
     C++ standard, likewise.
     """
-    table = _names_of(gcc, standard)
-    told = table.get(header)
-    return None if told is None else int(told, 16)
+    return _names_of(gcc, standard).get(header)
 
 
 @cache
-def _names_of(gcc: int, standard: int) -> dict[str, str]:
+def headers_naming(name: str, gcc: int, standard: int) -> tuple[str, ...]:
+    """The standard headers that bring a name alone, see named_by()."""
+    bit = bit_of(name)
+    return tuple(header for header, bits in _names_of(gcc, standard).items() if bit & bits)
+
+
+@cache
+def _names_of(gcc: int, standard: int) -> dict[str, int]:
     majors = {int(major): table for major, table in names().gcc.items()}
     standards = majors[max((major for major in majors if major <= gcc), default=min(majors))]
     years = {2000 + int(number): table for number, table in standards.items()}
-    return years[max((year for year in years if year <= standard), default=min(years))]
-
-
-def reaches(headers: frozenset[str], name: str, gcc: int) -> bool | None:
-    """Whether any of these standard headers brings the definition of a name in a GCC; None for an unknown name."""
-    wanted = DEFINED_IN.get(name)
-    if wanted is None:
-        return None
-    return any(not brought_by(header, gcc).isdisjoint(wanted) for header in headers)
+    told = years[max((year for year in years if year <= standard), default=min(years))]
+    return {header: int(bits, 16) for header, bits in told.items()}

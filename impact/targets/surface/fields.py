@@ -19,10 +19,8 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-
 from ....edges.memory import cached_method
-from ..snapshot import DATA, SnapshotError
+from ..snapshot import DATA, read_table
 from ..version import at_least, parts
 
 
@@ -225,25 +223,12 @@ class Fields:
         self._path = path
 
     @cached_property
-    def _packed(self) -> bytes:
-        try:
-            return self._path.read_bytes()
-        except OSError as error:
-            raise SnapshotError(f"{error}; install rosimpact again") from None
-
-    @cached_property
     def version(self) -> str:
-        return hashlib.sha1(self._packed).hexdigest()
+        return hashlib.sha1(self._path.read_bytes()).hexdigest()
 
     @cached_property
     def _texts(self) -> dict[str, str]:
-        import zstandard
-
-        try:
-            raw = zstandard.ZstdDecompressor().decompress(self._packed, max_output_size=1 << 26)
-            return msgspec.json.decode(raw, type=dict[str, str])
-        except (zstandard.ZstdError, msgspec.MsgspecError) as error:
-            raise SnapshotError(f"{self._path}: {error}; install rosimpact again") from None
+        return read_table(self._path, dict[str, str])
 
     def packages(self) -> list[str]:
         """Every package of every generation, as `package generation`."""

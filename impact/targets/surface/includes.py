@@ -3,28 +3,12 @@ many packages reads little."""
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 
 import msgspec
-import zstandard
 
-from ...conditions import Environment, all_hold
 from ...facts.cpp.lexical import Include
-from ...facts.surface import HeaderSurface, plain
 from ..version import newest_up_to
-
-_NOTHING_KNOWN = Environment()
-
-
-def compiled(header: HeaderSurface) -> HeaderSurface:
-    """A header with those of its includes that some Linux compiles, so none under `#if 0` or `#ifdef _WIN32`; without
-    lines, and without conditions that hold on all. Types that it announces are named as users write them."""
-    kept = []
-    for include in header.includes:
-        holds = all_hold(include.conditions, _NOTHING_KNOWN)
-        if holds is not False:
-            kept.append(Include(include.path, include.angled, 0, 0, () if holds else include.conditions))
-    announced = tuple(dict.fromkeys(plain(name, header.inline) for name in header.announced))
-    return msgspec.structs.replace(header, includes=tuple(kept), announced=announced)
 
 
 class IncludesRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -36,7 +20,7 @@ class IncludesRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
     announced: tuple[int, ...] = ()
 
 
-class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class Included(msgspec.Struct, frozen=True, array_like=True, dict=True):
     """versions: of one ROS generation, oldest first. approximate: those that a branch stood for. headers: by the path
     that dependants write; those that are generated are not among them."""
 
@@ -66,11 +50,17 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
     def _row(self, header: str, version: str) -> IncludesRow | None:
-        rows = self.headers.get(header)
-        if not rows or version not in self.versions:
+        place = self._places.get(version)
+        if place is None:
             return None
-        place = self.versions.index(version)
-        return next((row for row in rows if there(row.spans, place)), None)
+        for row in self.headers.get(header, ()):
+            if there(row.spans, place):
+                return row
+        return None
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {version: place for place, version in enumerate(self.versions)}
 
     def answer(self, include: Include, header: str, version: str) -> str:
         """The path that dependants would write for what a header includes, see path_of()."""
@@ -92,11 +82,3 @@ def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
 def there(spans: Sequence[int], place: int) -> bool:
     """Whether a place lies in some spans; none at all are all places."""
     return not spans or any([spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2)])
-
-
-def unpack(data: bytes) -> Included:
-    """What databuild packed, see surface_file.py there."""
-    return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
-
-
-_decoder = msgspec.msgpack.Decoder(Included)

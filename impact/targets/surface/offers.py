@@ -84,15 +84,14 @@ class Offers:
 
     def standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
-        offer, history = self.package(name), self.history(name)
-        built = history.build(offer.stored) if offer is not None and history is not None else None
-        return built.standard if built is not None else 0
+        offer = self.package(name)
+        return offer.build.standard if offer is not None else 0
 
     def exports(self, name: str) -> tuple[str, ...] | None:
         """What a package hands on to its dependants by CMake: packages, and the CMake names of system libraries; None
         when nothing of it is stored."""
-        offer, history = self.package(name), self.history(name)
-        return history.exports(offer.stored) if offer is not None and history is not None else None
+        offer = self.package(name)
+        return offer.history.exports(offer.stored) if offer is not None else None
 
     def is_bundle(self, name: str) -> bool:
         """True for a package of which the stored version, or else the newest one, has no header, module, library,
@@ -138,8 +137,8 @@ class Offers:
 
     def there(self, side: str, name: str, package: str) -> bool:
         """Whether the stored version that stands for the target's has a name at all."""
-        offer, history = self.package(package), self.history(package)
-        return offer is not None and history is not None and history.has(name, offer.stored)
+        offer = self.package(package)
+        return offer is not None and offer.history.has(name, offer.stored)
 
 
 class PackageOffer:
@@ -157,28 +156,29 @@ class PackageOffer:
         events = self.line.events.get(side, {}).get(name)
         return self._offered(side, name, events) if events else None
 
+    @property
+    def history(self) -> SurfaceHistory:
+        """All its stored versions, which stand beside what changed from one to the next."""
+        found = self._offers.history(self.package)
+        assert found is not None
+        return found
+
     @cached_property
     def build(self) -> BuildSurface:
         """What the stored version gives to CMake and at run time."""
         from .surface import BuildSurface
 
-        history = self._offers.history(self.package)
-        build = history.build(self.stored) if history is not None else None
-        return build or BuildSurface(self.package)
+        return self.history.build(self.stored) or BuildSurface(self.package)
 
     @cached_property
     def parameters(self) -> dict[str, str | None]:
         """The parameters that the stored version declares, with their defaults, as in Surface."""
-        history = self._offers.history(self.package)
-        return dict(history.parameters(self.stored)) if history is not None else {}
+        return dict(self.history.parameters(self.stored))
 
     def last_default(self, parameter: str) -> str | None:
         """The default that a parameter had in the last earlier version that declares it; None where there is none."""
-        history = self._offers.history(self.package)
-        if history is None:
-            return None
         for version in reversed(self.line.versions[: self.place]):
-            declared = dict(history.parameters(version))
+            declared = dict(self.history.parameters(version))
             if parameter in declared:
                 return declared[parameter]
         return None
@@ -234,7 +234,7 @@ class PackageOffer:
 
     def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
         """How a stored version declares a name of C++ or Python, a line for each overload."""
-        return declarations(self._offers.history(self.package), side, name, version)
+        return declarations(self.history, side, name, version)
 
 
 def other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:

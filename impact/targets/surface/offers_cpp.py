@@ -273,12 +273,12 @@ def _meaning(default: str) -> str:
 
 def _untold(offers: Offers, offered: Offered, arguments: int) -> Availability | None:
     """Whether a call of what an earlier version took does not tell the template arguments any more."""
-    offer, history = offers.package(offered.package), offers.history(offered.package)
-    if not offered.first or offer is None or history is None:
+    offer = offers.package(offered.package)
+    if not offered.first or offer is None:
         return None
     place = offer.line.place(offered.last)
     before = offer.line.versions[place] if place is not None else ""
-    untold = is_untold(history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
+    untold = is_untold(offer.history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
     return _found("changed", offered, "template") if untold else None
 
 

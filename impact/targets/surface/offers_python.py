@@ -132,8 +132,7 @@ class PythonOffers:
         """Whether a module that is there surely lacks a name that others of the package have, in the version at a place
         and in those beside it."""
         module, _, word = name.rpartition(".")
-        history = self._offers.history(offer.package)
-        if history is None or word not in history.python_words:
+        if word not in offer.history.python_words:
             return False
         versions = offer.line.versions[max(place - 1, 0) : place + 2]
         read = [self.names(offer.package, version) for version in versions if version not in offer.line.approximate]
@@ -144,9 +143,8 @@ class PythonOffers:
     def _imported(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         """A name that is imported from a module that is there, or taken of a class that is, and that no version knows
         anywhere."""
-        history = self._offers.history(offer.package)
         module, _, word = use.name.rpartition(".")
-        if history is None or word in history.python_words or offer.stored in offer.line.approximate:
+        if word in offer.history.python_words or offer.stored in offer.line.approximate:
             return None
         if not offer.exact and offer.place + 1 == len(offer.line.versions):
             return None  # newer than all that were read, and may have got it

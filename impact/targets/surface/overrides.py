@@ -79,8 +79,8 @@ class Override:
 
     def _entities(self, package: str, name: str, version: str = "") -> list[Entity]:
         """What a version of a package, by default the target's, declares by a name."""
-        offer, history = self.offers.package(package), self.offers.history(package)
-        return list(history.entities(name, version or offer.stored)) if offer is not None and history else []
+        offer = self.offers.package(package)
+        return list(offer.history.entities(name, version or offer.stored)) if offer is not None else []
 
     def _virtual(self, package: str, name: str, version: str = "") -> list[Entity]:
         """The methods of a name that may be overridden."""

@@ -1,13 +1,11 @@
-"""What a version of a package offers to Python: names, with re-exports followed, and what changed of them."""
+"""What a version of a package offers to Python: names, with re-exports followed."""
 
 import builtins
 import enum
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
-
-import msgspec
 
 from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
 from .surface import InstalledModule, PythonSurface
@@ -305,191 +303,12 @@ def _entry(dotted: str, written: list[Bound]) -> PythonName:
     return PythonName(dotted, bound.kind, bound, not plain or bool(others))
 
 
-class PythonChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A difference between two surfaces.
-
-    kind: `removed`, `moved` (now: where it can be imported instead), `added`, `signature`, `default`, `deprecated`
-    (now: the message), `kind` (a method became a property ...). name: dotted. what: of which kind the thing is
-    (`module`, `class`, `function`, `method` ...). old, now: as written. breaks: code that used the old form may fail.
-    sure: False where a condition, a decorator or a base class of another package leaves it open.
-    """
-
-    kind: str
-    name: str
-    what: str
-    old: str = ""
-    now: str = ""
-    breaks: bool = True
-    sure: bool = True
-
-
-def compare(old: PythonSurface, new: PythonSurface) -> tuple[PythonChange, ...]:
-    """What changed for those who use the package from Python, sorted by name. A name of which it cannot be told whether
-    it is still there is left out."""
-    return _Comparison(SurfaceNames(old), SurfaceNames(new)).run()
-
-
-class _Comparison:
-    def __init__(self, old: SurfaceNames, new: SurfaceNames):
-        self.old, self.new = old, new
-        self.changes: dict[tuple[str, str], PythonChange] = {}
-        self.seen: set[str] = set()
-
-    def run(self) -> tuple[PythonChange, ...]:
-        gone = self.modules()
-        # The shortest way to a thing is how its members are called.
-        for name, entry in sorted(self.old.offered.items(), key=lambda item: (item[0].count("."), item[0])):
-            found = self.new.find(name)
-            if found is UNKNOWN:
-                continue
-            if found is None:
-                self.missing(name, entry, gone)
-            elif entry.where not in self.seen:
-                self.seen.add(entry.where)
-                self.both(name, entry, found)
-        for name, entry in self.new.offered.items():
-            if self.old.find(name) is None and name not in self.moved_to:
-                self.add("added", name, entry.kind, now=shown(entry), breaks=False)
-        return tuple(sorted(self.changes.values(), key=lambda c: (c.name, c.kind)))
-
-    @cached_property
-    def moved_to(self) -> set[str]:
-        return {change.now for change in self.changes.values() if change.kind == "moved"}
-
-    def add(self, kind: str, name: str, what: str, **more) -> None:
-        self.changes.setdefault((kind, name), PythonChange(kind, name, what, **more))
-
-    def modules(self) -> list[str]:
-        """Public modules that are gone: told once for the topmost."""
-        gone: list[str] = []
-        for name in sorted(self.old.modules):
-            if any(is_private(part) for part in name.split(".")) or any(name.startswith(f"{g}.") for g in gone):
-                continue
-            if self.new.find(name) is None:
-                gone.append(name)
-                twins = [m for m in self.new.modules if m.rpartition(".")[2] == name.rpartition(".")[2]]
-                twins = [m for m in twins if m not in self.old.modules and self.alike_modules(name, m)]
-                if len(twins) == 1:
-                    self.add("moved", name, "module", old=name, now=twins[0])
-                else:
-                    self.add("removed", name, "module", old=name)
-        for name in sorted(self.new.modules):
-            if not any(is_private(part) for part in name.split(".")) and self.old.find(name) is None:
-                self.add("added", name, "module", breaks=False)
-        return gone
-
-    def alike_modules(self, old: str, new: str) -> bool:
-        had = {n for n in self.old.bound(self.old.modules[old]) if "." not in n}
-        has = {n for n in self.new.bound(self.new.modules[new]) if "." not in n}
-        return not had or len(had & has) * 2 >= len(had)
-
-    def missing(self, name: str, entry: PythonName, gone: list[str]) -> None:
-        """A name that can no longer be imported from where it was."""
-        target = self.elsewhere(name, entry)
-        inside = any(name.startswith(f"{module}.") for module in gone)
-        if target:
-            if not inside or (("moved", name.rpartition(".")[0]) not in self.changes):
-                self.add("moved", name, entry.kind, old=shown(entry), now=target, sure=not entry.conditional)
-        elif not inside:
-            self.add("removed", name, entry.kind, old=shown(entry), sure=not entry.conditional)
-
-    def elsewhere(self, name: str, entry: PythonName) -> str:
-        """Where else the thing can be imported from, empty where nowhere or where several things are like it."""
-        last = name.rpartition(".")[2]
-        found: dict[str, list[str]] = {}
-        for path, other in self.new.offered.items():
-            if path.rpartition(".")[2] != last or other.kind != entry.kind:
-                continue
-            before = self.old.find(path)
-            same = before is not None and before.where == entry.where
-            if same or (before is None and self.alike(entry, other)):
-                found.setdefault(other.where, []).append(path)
-        if len(found) != 1:
-            return ""
-        return min(next(iter(found.values())), key=lambda path: (path.count("."), path))
-
-    def alike(self, old: PythonName, new: PythonName) -> bool:
-        """Whether two things of one name may be the same: by the name of their module, else functions by their
-        parameters, classes by their members."""
-        if old.bound is None or new.bound is None:
-            return False
-        if old.where.split(".")[-2:] == new.where.split(".")[-2:] and old.where.count(".") > 2:
-            return True
-        if old.kind == "class":
-            had, has = set(self.old.members(old)), set(self.new.members(new))
-            return len(had & has) * 2 >= len(had) and (bool(had) or old.bound.bases == new.bound.bases)
-        if old.kind == "function":
-            had, has = ({p.name for p in b.parameters} for b in (old.bound, new.bound))
-            return len(had & has) * 2 >= len(had | has)
-        return old.bound.value == new.bound.value and bool(old.bound.value)
-
-    def both(self, name: str, old: PythonName, new: PythonName) -> None:
-        """A thing that both have."""
-        if old.bound is None or new.bound is None:
-            return
-        sure = not (old.conditional or new.conditional)
-        of_class = name.endswith(".__init__")  # then it is told of the class
-        if new.bound.deprecated and not old.bound.deprecated and not of_class:
-            self.add("deprecated", name, old.kind, now=new.bound.deprecated, breaks=False, sure=sure)
-        if old.kind == "class" and new.kind == "class":
-            self.classes(name, old, new)
-        elif _callable(old.kind) and _callable(new.kind):
-            self.signatures(name, old, new, sure)
-        elif _nature(old) != _nature(new) and "" not in (_nature(old), _nature(new)):
-            if {old.kind, new.kind} != {"function", "class"}:  # both are called
-                self.add("kind", name, old.kind, old=old.kind, now=new.kind, sure=sure)
-        elif old.kind == "attribute" and old.bound.value and new.bound.value and old.bound.value != new.bound.value:
-            self.add("default", name, old.kind, old=old.bound.value, now=new.bound.value, breaks=False, sure=sure)
-
-    def classes(self, name: str, old: PythonName, new: PythonName) -> None:
-        mine = self.new.members(new)
-        for member, had in self.old.members(old).items():
-            dotted = f"{name}.{member}"
-            has = mine.get(member) or self.new.member(new, member)
-            if has is UNKNOWN:
-                continue
-            if has is None:
-                if member != "__init__":
-                    self.add("removed", dotted, had.kind, old=shown(had), sure=not had.conditional)
-                elif had.bound is not None and had.bound.parameters:
-                    self.add("signature", dotted, "method", old=shown(had), now="()", sure=not had.conditional)
-            else:
-                self.both(dotted, had, has)
-        for member, has in mine.items():
-            if member != "__init__" and self.old.member(old, member) is None:
-                self.add("added", f"{name}.{member}", has.kind, now=shown(has), breaks=False)
-
-    def signatures(self, name: str, old: PythonName, new: PythonName, sure: bool) -> None:
-        assert old.bound is not None and new.bound is not None
-        had, has = old.bound.parameters, new.bound.parameters
-        sure = sure and not (wrapped(old.bound) or wrapped(new.bound))
-        problem = broken_by(had, has)
-        # Which keywords `**kwargs` stood for cannot be told.
-        sure = sure and not (problem.startswith("`**"))
-        if problem or [(p.name, p.kind) for p in had] != [(p.name, p.kind) for p in has]:
-            self.add("signature", name, old.kind, old=shown(old), now=shown(new), breaks=bool(problem), sure=sure)
-        before = {p.name: p.default for p in had}
-        for parameter in has:
-            value, now = before.get(parameter.name), parameter.default
-            if value is None or now is None or "?" in (value, now):
-                continue
-            if value != now and not (_PATH.match(value) and _PATH.match(now) and _last(value) == _last(now)):
-                at = f"{name}({parameter.name})"
-                self.add("default", at, "parameter", old=value, now=now, breaks=False, sure=sure)
-
-
 _KEEPS = frozenset((
     "property", "cached_property", "abstractproperty", "staticmethod", "classmethod", "abstractmethod", "overload",
     "abstractclassmethod", "abstractstaticmethod", "contextmanager", "asynccontextmanager", "cache", "lru_cache",
     "override", "final", "deprecated", "deprecate", "dataclass", "no_type_check", "wraps", "coroutine",
 ))  # fmt: skip
 """Decorators that leave the parameters as they are."""
-# One constant may be called by several paths (`_rclpy.ClockType.ROS_TIME`, `ClockType.ROS_TIME`).
-_PATH = re.compile(r"[A-Za-z_][\w.]*\Z")
-
-
-def _last(path: str) -> str:
-    return path.rpartition(".")[2]
 
 
 def wrapped(bound: Bound) -> bool:
@@ -497,16 +316,9 @@ def wrapped(bound: Bound) -> bool:
     return any(decorator.rpartition(".")[2] not in _KEEPS for decorator in bound.decorators)
 
 
-def _callable(kind: str) -> bool:
+def is_callable(kind: str) -> bool:
+    """Whether things of this kind are functions."""
     return kind in ("function", "method", "classmethod", "staticmethod")
-
-
-def _nature(entry: PythonName) -> str:
-    """How a thing is used: `value` without a call; empty where it cannot be told, since a name may stand for a class
-    or a function."""
-    if entry.kind in ("attribute", "instance"):
-        return "value" if entry.bound is not None and entry.bound.value else ""
-    return "value" if entry.kind == "property" else "call" if _callable(entry.kind) else entry.kind
 
 
 def shown(entry: PythonName) -> str:
@@ -514,7 +326,7 @@ def shown(entry: PythonName) -> str:
     bound = entry.bound
     if bound is None:
         return entry.where
-    if _callable(bound.kind):
+    if is_callable(bound.kind):
         return signature(bound.parameters)
     return f"({', '.join(bound.bases)})" if bound.kind == "class" else bound.value
 
@@ -535,37 +347,3 @@ def signature(parameters: Iterable[PythonParameter]) -> str:
     if last == "positional":
         texts.append("/")
     return f"({', '.join(texts)})"
-
-
-def broken_by(old: tuple[PythonParameter, ...], new: tuple[PythonParameter, ...]) -> str:
-    """Why a call that the old parameters took may fail with the new ones, empty where none does."""
-    kinds = {parameter.kind for parameter in new}
-    by_name: Mapping[str, PythonParameter] = {p.name: p for p in new if p.kind in ("normal", "keyword")}
-    had = [p for p in old if p.kind in ("positional", "normal")]
-    has = [p for p in new if p.kind in ("positional", "normal")]
-    for parameter in old:
-        if parameter.kind == "args" and "args" not in kinds:
-            return f"`*{parameter.name}` is gone"
-        if parameter.kind == "kwargs" and "kwargs" not in kinds:
-            return f"`**{parameter.name}` is gone"
-        if parameter.kind in ("normal", "keyword") and parameter.name not in by_name and "kwargs" not in kinds:
-            return f"`{parameter.name}` is gone"
-        now = by_name.get(parameter.name)
-        if now is not None and now.default is None and parameter.default is not None:
-            return f"`{parameter.name}` must be given"
-    for number, parameter in enumerate(had):
-        if number >= len(has):
-            if "args" not in kinds:
-                return f"`{parameter.name}` is no longer taken by position"
-        elif has[number].name != parameter.name and parameter.kind == "normal":
-            return f"`{has[number].name}` stands where `{parameter.name}` stood"
-        elif parameter.kind == "positional" and has[number].default is None and parameter.default is not None:
-            return f"`{has[number].name}` must be given"
-    known = {parameter.name for parameter in old}
-    for number, parameter in enumerate(new):
-        takes_over = parameter.kind == "positional" and number < len(had)
-        if parameter.kind in ("args", "kwargs") or parameter.default is not None or takes_over:
-            continue
-        if parameter.name not in known:
-            return f"`{parameter.name}` must be given"
-    return ""

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
-import zstandard
 
 from ....edges.console import UserError
 from ....edges.memory import cached_method
@@ -25,8 +24,8 @@ from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ModuleSurface, Taken
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
 from ..snapshot import DATA, SnapshotError
-from . import includes as surface_includes
-from .changes import Line, unpack
+from ..unpacked import decoder_of, read_packed
+from .changes import Line
 from .includes import Included, there
 
 if TYPE_CHECKING:
@@ -37,14 +36,6 @@ _TYPES = CLASSES | {"enum", "alias"}
 
 class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
-
-
-class Stored(NamedTuple):
-    """One version of a package. approximate: a branch stood for its tag."""
-
-    version: str
-    approximate: bool
-    surface: Surface
 
 
 class About(NamedTuple):
@@ -77,7 +68,7 @@ class SurfaceHistory:
 
     def __init__(self, package: str, data: bytes, includes: bytes):
         self.package, self._includes = package, includes
-        versions, approximate, rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+        versions, approximate, rows = read_packed(data, _Rows)
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
         # Values are read where they are asked for.
@@ -185,7 +176,7 @@ class SurfaceHistory:
     @cached_property
     def included(self) -> Included:
         """What the headers of each version include."""
-        return surface_includes.unpack(self._includes)
+        return read_packed(self._includes, Included)
 
     def interfaces(self, version: str) -> dict[str, Interface]:
         """The messages, services and actions of a version, by `msg/Name`."""
@@ -197,7 +188,7 @@ class SurfaceHistory:
             return iter(())
         place = self.versions.index(version)
         rows = self._by_last.get(name.rpartition("::")[2], ())
-        near = tuple(_decode_entity(value) for _, value, spans in rows if there(spans, place))
+        near = tuple(decoder_of(Entity)(value) for _, value, spans in rows if there(spans, place))
         found = offered([HeaderSurface(near, inline=self._inline(version))]) if near else ()
         return (entity for entity in found if entity.name == name)
 
@@ -206,7 +197,7 @@ class SurfaceHistory:
         """The rows of what is declared in C++, by the last part of its name, with and without template arguments."""
         found: dict[str, list[Any]] = {}
         for row in self._rows.get("entity", ()):
-            full = _decoded(row[1])[1]
+            full = _decode_head(row[1]).name
             for last in {full.rpartition("::")[2], full.partition("<")[0].rpartition("::")[2]}:
                 found.setdefault(last, []).append(row)
         return found
@@ -245,7 +236,7 @@ class SurfaceHistory:
     ) -> Iterator[tuple[str, Any]]:
         """Scope and value of each row of a kind that a version has. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
-        decode = msgspec.msgpack.Decoder(type_).decode
+        decode = decoder_of(type_)
         for scope, value, spans in self._rows.get(kind, ()):
             if of and scope not in of:
                 continue
@@ -280,11 +271,11 @@ class SurfaceHistory:
         found: dict[str, dict[str, None]] = {}
         classes: set[str] = set()
         for scope, value, _ in self._rows.get("entity", ()):
-            what, full, *_ = _decoded(value)
-            if what in _TYPES:
-                name = plain(full, inline)
+            head = _decode_head(value)
+            if head.kind in _TYPES:
+                name = plain(head.name, inline)
                 found.setdefault(name, {})[scope] = None
-                if what in CLASSES:
+                if head.kind in CLASSES:
                     classes.add(name)
         return {name: tuple(sorted(where)) for name, where in found.items() if name.rpartition("::")[0] not in classes}
 
@@ -292,26 +283,36 @@ class SurfaceHistory:
     def python_words(self) -> frozenset[str]:
         """Every word that some version binds somewhere in its Python modules, and the last parts of their names."""
         values = (value for kind in ("bound", "taken") for _, value, _ in self._rows.get(kind, ()))
-        found = {_decoded(value)[0].rpartition(".")[2] for value in values}
+        found = {_decode_first(value).name.rpartition(".")[2] for value in values}
         return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
 
-    def stored(self) -> Iterator[Stored]:
-        """Every version."""
-        for version in self.versions:
-            surface = self.surface(version)
-            assert surface is not None
-            yield Stored(version, version in self.approximate, surface)
 
-
-_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
-_decoded = msgspec.msgpack.Decoder().decode
-_decode_entity = msgspec.msgpack.Decoder(Entity).decode
+_Rows = tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]]
 _name = itemgetter(0)
+
+
+_decoded = decoder_of(Any)
+
+
+class _Head(msgspec.Struct, array_like=True, gc=False):
+    """How an entity begins: what follows is passed over."""
+
+    kind: str
+    name: str
+
+
+class _First(msgspec.Struct, array_like=True, gc=False):
+    """The same of a name of Python that is bound or taken."""
+
+    name: str
+
+
+_decode_head, _decode_first = decoder_of(_Head), decoder_of(_First)
 # How what a row of a kind is about is called.
 _NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
     "header": lambda package, path, value: path,
-    "entity": lambda package, path, value: _decoded(value)[1],
-    "bound": lambda package, module, value: f"{module}.{_decoded(value)[0]}",
+    "entity": lambda package, path, value: _decode_head(value).name,
+    "bound": lambda package, module, value: f"{module}.{_decode_first(value).name}",
     "module": lambda package, module, value: module,
     "interface": lambda package, name, value: f"{package}/{name}",
 }
@@ -333,9 +334,9 @@ class StoredRows:
 
     def columns(self, query: str, *values: str) -> list[Any]:
         """The first column of a query's rows."""
-        return [row[0] for row in self._rows(query, *values)]
+        return [row[0] for row in self.rows(query, *values)]
 
-    def _rows(self, query: str, *values: str | int) -> Iterator[tuple]:
+    def rows(self, query: str, *values: str | int) -> Iterator[tuple]:
         try:
             if self._reader != os.getpid():
                 # No other process may go on with a connection of this one.
@@ -352,7 +353,7 @@ class Surfaces(StoredRows):
     def __init__(self, file: Path):
         super().__init__(file)
         self._generations: dict[str, tuple[int, ...]] = {}
-        for name, ros in self._rows("SELECT name, ros FROM package ORDER BY name, ros"):
+        for name, ros in self.rows("SELECT name, ros FROM package ORDER BY name, ros"):
             self._generations[name] = (*self._generations.get(name, ()), ros)
         self.packages = frozenset(self._generations)
 
@@ -374,7 +375,7 @@ class Surfaces(StoredRows):
     def line(self, package: str, ros: int) -> Line | None:
         """What changed in a package of a ROS generation from version to version, None when it is not there."""
         row = self._row("changes", package, ros)
-        return unpack(row[0]) if row else None
+        return read_packed(row[0], Line) if row else None
 
     def lines(self, package: str) -> dict[int, Line]:
         """The same by ROS generation; empty when the package is not there."""
@@ -384,12 +385,12 @@ class Surfaces(StoredRows):
     def included(self, package: str, ros: int) -> Included | None:
         """What the headers of each version of a package of a ROS generation include, None when it is not there."""
         row = self._row("includes", package, ros)
-        return surface_includes.unpack(row[0]) if row else None
+        return read_packed(row[0], Included) if row else None
 
     def _row(self, columns: str, package: str, ros: int) -> tuple | None:
         if ros not in self.generations(package):
             return None
-        return next(self._rows(f"SELECT {columns} FROM package WHERE name = ? AND ros = ?", package, ros), None)
+        return next(self.rows(f"SELECT {columns} FROM package WHERE name = ? AND ros = ?", package, ros), None)
 
     def holders(self, header: str) -> tuple[str, ...]:
         """The packages that may have, or have had, a header, by the path that dependants write."""
@@ -400,25 +401,24 @@ class Surfaces(StoredRows):
     @cached_property
     def _headers(self) -> dict[str, tuple[str, ...]]:
         """Headers that do not lie in a folder called like their package."""
-        (data,) = next(self._rows("SELECT data FROM headers"))
-        return msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(data), type=dict[str, tuple[str, ...]])
+        (data,) = next(self.rows("SELECT data FROM headers"))
+        return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def changing_parameters(self) -> dict[str, frozenset[str]]:
         """The last parts of names of parameters that some versions of a package surely declare and others surely do
         not, with those packages."""
-        (data,) = next(self._rows("SELECT data FROM parameters"))
-        plain = zstandard.ZstdDecompressor().decompress(data)
-        return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
+        (data,) = next(self.rows("SELECT data FROM parameters"))
+        return read_packed(data, dict[str, frozenset[str]])
 
     @cached_property
     def about(self) -> About:
         """What the file holds."""
-        return About(*next(self._rows("SELECT packages, versions, distros, date FROM about")))
+        return About(*next(self.rows("SELECT packages, versions, distros, date FROM about")))
 
     def elsewhere(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
-        row = next(self._rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
+        row = next(self.rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
         return tuple(row[0].split()) if row else ()
 
     @cached_property

@@ -6,11 +6,11 @@ from difflib import SequenceMatcher
 
 import msgspec
 
-from ...facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
+from ...impact.facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
 
 
 class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """One difference. name: of the entity, or the path of a header.
+    """One difference. name: of the entity.
 
     | kind | holds |
     |---|---|
@@ -27,7 +27,6 @@ class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | base | the bases of a class |
     | access | it was public and is protected, or is gone from both |
     | deleted, pure, final | it became so |
-    | header removed, header added, header deprecated | name is the path; new_header what to include instead |
 
     compatible: whoever uses the old one still compiles. old_header, new_header: where it stands or stood."""
 
@@ -50,7 +49,7 @@ _SIMILAR = 0.6
 def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> tuple[CppChange, ...]:
     """The differences between the headers of two versions of a package, by their paths as they are included. Sorted by
     name; nothing for what only moved its line, changed its spacing or the names of its parameters."""
-    changes = list(_headers(old, new))
+    changes: list[CppChange] = []
     before, after = _offered(old), _offered(new)
     names = {name for _, name in after}
     gone: list[_Placed] = []
@@ -103,16 +102,6 @@ def _copies(one: Entity) -> bool:
         and len(types) == 1
         and types[0].removeprefix("const ").rstrip("&") == _simple(one.name)
     )
-
-
-def _headers(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) -> Iterable[CppChange]:
-    for path in sorted(old.keys() - new.keys()):
-        yield CppChange("header removed", path, old_header=path, new_header=old[path].instead)
-    for path in sorted(new.keys() - old.keys()):
-        yield CppChange("header added", path, new_header=path, compatible=True)
-    for path in sorted(old.keys() & new.keys()):
-        if old[path].deprecated is None and new[path].deprecated is not None:
-            yield CppChange("header deprecated", path, old_header=path, new_header=new[path].instead, compatible=True)
 
 
 def _offered(headers: Mapping[str, HeaderSurface]) -> dict[tuple[str, str], list[_Placed]]:

@@ -2,24 +2,22 @@
 
 import posixpath
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import msgspec
 
-from ....edges.memory import cached_method
-from ....edges.reach import walk
-from ...facts.interface import PRIMITIVES, Field, Section, full_name
-from ...facts.parameters import mentions
-from ...facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
-from . import build as surface_build
-from . import diff as surface_diff
-from . import python as surface_python
-from .changes import PARAMETER
-from .fields import snake
-from .python import UNKNOWN, SurfaceNames
-from .surface import BuildSurface, PythonSurface, Surface
+from ...edges.memory import cached_method
+from ...edges.reach import walk
+from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
+from ...impact.facts.parameters import mentions
+from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
+from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
+from ...impact.targets.surface.fields import ROS1_SUFFIXES, snake
+from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
+from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
+from . import compare_build, compare_cpp, compare_python
 
 
 class EntityPlace(NamedTuple):
@@ -139,36 +137,6 @@ class RepositorySurfaces:
                 yield "::".join([*parts[:length], space.removeprefix("::")])
 
 
-class VersionChange(msgspec.Struct, frozen=True, gc=False):
-    """One difference between two versions of a package.
-
-    side: `c++`, `python`, `message` or `build` (CMake, headers, programs, plugins, launch files).
-    kind: `removed`, `added`, `moved`, `deprecated`, `signature`, `default`, `value`, `type`, `base`, `access`,
-    `deleted`, `pure`, `final`, `kind`, `wire` (both versions of a message do not talk to each other).
-    what: of which sort the thing is (`class`, `method`, `header`, `field`, `target`, `executable` ...).
-    name: as users write it. old, now: declarations. aspects: in what signatures differ.
-    instead: what to use now, where that is known or can be guessed. moved_to: the package that has it now.
-    where: the header or module that has or had it.
-    breaks: code that used the old one may no longer build or run. sure: from 0 to 1.
-    """
-
-    package: str
-    side: str
-    kind: str
-    what: str
-    name: str
-    old: str = ""
-    now: str = ""
-    aspects: tuple[str, ...] = ()
-    instead: str = ""
-    moved_to: str = ""
-    where: str = ""
-    breaks: bool = True
-    sure: float = 1.0
-
-
-OPEN = 0.5
-"""How sure a change is that hangs on something outside of the repository, or that is not understood."""
 CONDITIONAL = 0.7
 """How sure a change is of something that stands under a condition of the preprocessor."""
 
@@ -180,7 +148,7 @@ def compare(
     to another package, or into a base class there, is not taken for gone."""
     before = before or RepositorySurfaces({old.package: old})
     after = after or RepositorySurfaces({new.package: new})
-    changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
+    changes = compare_cpp.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
     found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
     found += _parameters_changed(old, new, before, after)
@@ -228,22 +196,11 @@ def _all_headers(surface: Surface) -> dict[str, bool]:
 def _request(stem: str, surface: Surface) -> bool:
     """Whether a header of ROS 1 is made of part of a service or action."""
     names = {name.partition("/")[2] for name, _ in surface.interfaces}
-    ends = (
-        "Request",
-        "Response",
-        "Action",
-        "ActionGoal",
-        "ActionResult",
-        "ActionFeedback",
-        "Goal",
-        "Result",
-        "Feedback",
-    )
-    return stem in names or any(stem.endswith(end) and stem[: -len(end)] in names for end in ends)
+    return any(stem.removesuffix(end) in names for ends in ROS1_SUFFIXES.values() for end in ends)
 
 
 def _headers_changed(
-    old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[surface_diff.CppChange]
+    old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[compare_cpp.CppChange]
 ) -> Iterator[VersionChange]:
     had, has = _all_headers(old), _all_headers(new)
     open_ended = _open_ended(old, new)
@@ -299,7 +256,7 @@ def _cpp(
     new: Surface,
     before: RepositorySurfaces,
     after: RepositorySurfaces,
-    changes: Sequence[surface_diff.CppChange],
+    changes: Sequence[compare_cpp.CppChange],
 ) -> Iterator[VersionChange]:
     hints = {change.name: change for change in changes if change.kind == "renamed"}
     broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
@@ -307,7 +264,7 @@ def _cpp(
     open_ended = _open_ended(old, new)
     has = _all_headers(new)
     for change in changes:
-        if change.kind.startswith("header ") or change.kind == "renamed":
+        if change.kind == "renamed":
             continue
         if change.kind == "default" and (change.old, change.new) in broken:
             continue  # both declarations are shown with what breaks
@@ -351,7 +308,7 @@ def _cpp(
 
 def _gone(
     told: VersionChange,
-    change: surface_diff.CppChange,
+    change: compare_cpp.CppChange,
     old: Surface,
     new: Surface,
     before: RepositorySurfaces,
@@ -389,7 +346,7 @@ def _gone(
         found, strange = after.inherited(owner, last)
         if found:
             # A method may be there with other parameters; those of the base count then.
-            if one.kind not in FUNCTIONS or "override" in one.traits or surface_diff.still_callable(one, found):
+            if one.kind not in FUNCTIONS or "override" in one.traits or compare_cpp.still_callable(one, found):
                 return None
             return msgspec.structs.replace(told, kind="signature", now=declared(found[0]), aspects=("types",))
         if strange:
@@ -402,28 +359,14 @@ def _gone(
 
 
 def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
-    for change in surface_python.compare(old.python, new.python):
-        sure = 1.0 if change.sure else OPEN
-        instead = change.now if change.kind == "moved" else ""
-        told = VersionChange(
-            old.package,
-            "python",
-            change.kind,
-            change.what,
-            change.name,
-            change.old if change.kind != "moved" else "",
-            "" if instead else change.now,
-            instead=instead,
-            breaks=change.breaks,
-            sure=sure,
-        )
-        if change.kind == "removed":
-            home = _python_home(change.name, new, after)
-            if home == "?":
-                continue
-            if home:
-                told = msgspec.structs.replace(told, kind="moved", moved_to=home, breaks=not _runs_with(new, home))
-        yield told
+    for change in compare_python.compare(old.python, new.python):
+        home = _python_home(change.name, new, after) if change.kind == "removed" else ""
+        if home == "?":
+            continue
+        if home:
+            breaks = home not in new.runs_with  # who installs the package gets that one too
+            change = msgspec.structs.replace(change, kind="moved", moved_to=home, breaks=breaks)
+        yield change
 
 
 def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
@@ -438,11 +381,6 @@ def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
         if found is not None:
             return package
     return ""
-
-
-def _runs_with(new: Surface, package: str) -> bool:
-    """Whether who installs a package gets another one too."""
-    return package in new.runs_with
 
 
 def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
@@ -515,36 +453,16 @@ def _type(field: Field, package: str) -> str:
 
 
 def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
-    for change in surface_build.compare(old.build, new.build):
+    for change in compare_build.compare(old.build, new.build):
         if change.what == "header":
             continue  # told with what is in them
-        instead, moved_to = change.now if change.kind == "moved" else "", ""
-        kind = change.kind
-        if kind in ("removed", "moved") and change.what in ("executable", "plugin", "launch file", "target"):
-            homes = [
-                p for p, s in after.surfaces.items() if p != new.package and change.name in _things(change.what, s)
-            ]
-            if len(homes) == 1 and not instead:
-                kind, moved_to = "moved", homes[0]
-        now = "" if instead else change.now
-        breaks = change.breaks and not (moved_to and change.what == "plugin")
-        # What a package needs for itself is no promise; that it is passed on is.
-        sure = 1.0 if change.sure else OPEN
-        yield VersionChange(
-            old.package,
-            "build",
-            kind,
-            change.what,
-            change.name,
-            change.old,
-            now,
-            (),
-            instead,
-            moved_to,
-            "",
-            breaks,
-            sure,
-        )
+        if change.kind == "removed" and change.what in _MOVABLE:
+            things = compare_build.THINGS[change.what]
+            homes = [p for p, s in after.surfaces.items() if p != new.package and change.name in things(s.build)]
+            if len(homes) == 1:
+                breaks = change.breaks and change.what != "plugin"
+                change = msgspec.structs.replace(change, kind="moved", moved_to=homes[0], breaks=breaks)
+        yield change
 
 
 def _parameters_changed(
@@ -568,12 +486,4 @@ def _parameters_changed(
             yield change("added", name, "", default, OPEN if earlier is not None and mentions(earlier, name) else 1.0)
 
 
-def _things(what: str, surface: Surface) -> set[str]:
-    build = surface.build
-    parts: dict[str, Callable[[], Iterable[str]]] = {
-        "executable": lambda: (p.name for p in build.programs),
-        "plugin": lambda: (p.name for p in build.plugins),
-        "launch file": lambda: (f.path for f in build.launches),
-        "target": lambda: (t.name for t in build.targets),
-    }
-    return set(parts[what]())
+_MOVABLE = frozenset(("executable", "plugin", "launch file", "target"))
