@@ -131,21 +131,21 @@ class Roles:
     def found_with(self, names: Iterable[str]) -> frozenset[str]:
         """All that CMake may find where it finds these: of packages of the workspace what they export, of others all
         that their manifests depend on."""
-        view = self._view
-        found: set[str] = set()
-        waiting = list(names)
-        while waiting:
-            name = waiting.pop()
-            if name in found:
-                continue
-            found.add(name)
-            own = view.workspace.packages.get(name)
-            further = self._list_own_exports(own) if own is not None and own.build.files else None
-            if further is None:
-                found |= view.spread({name} | {p.name for p in view.cmake(name)})
-            else:
-                waiting.extend(further)
-        return frozenset(found)
+        walked = walk(names, lambda name: self._exported_here(name) or ())
+        return frozenset().union(*map(self._brought_along, walked))
+
+    @cached_method
+    def _exported_here(self, name: str) -> list[str] | None:
+        """What a package of the workspace exports; None for others, and where that is not known."""
+        own = self._view.workspace.packages.get(name)
+        return self._list_own_exports(own) if own is not None and own.build.files else None
+
+    @cached_method
+    def _brought_along(self, name: str) -> frozenset[str]:
+        """A name, and all that its manifest brings where it is not known what it exports."""
+        if self._exported_here(name) is not None:
+            return frozenset((name,))
+        return self._view.spread({name, *(provider.name for provider in self._view.cmake(name))})
 
     def _named(self, item: str) -> Iterable[str]:
         """The package of this name, or who answers find_package() of a system library's CMake name."""

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cached_method
-from ...edges.reach import Reach, walk
+from ...edges.reach import Reach
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
@@ -112,7 +112,9 @@ class TargetView:
         self.asked = asked
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
+        # By name, it and what comes along with it, and with what may come along.
         self._whole: dict[str, frozenset[str]] = {}
+        self._widest: dict[str, frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
@@ -656,7 +658,7 @@ class TargetView:
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
-        return frozenset(walk(names, self._possibly_with))
+        return frozenset().union(*(_whole(name, self._possibly_with, self._widest) for name in names))
 
     @cached_property
     def unknown_contents(self) -> UnknownContents:
@@ -697,24 +699,7 @@ class TargetView:
 
     @cached_method
     def _spread(self, names: frozenset[str]) -> frozenset[str]:
-        return frozenset().union(*map(self._installed_whole, names))
-
-    def _installed_whole(self, name: str) -> frozenset[str]:
-        """A name and everything that is installed along with it."""
-        known = self._whole.get(name)
-        if known is None:
-            found, waiting = {name}, [name]
-            while waiting:
-                for other in self._installed_with(waiting.pop()):
-                    if other not in found:
-                        found.add(other)
-                        whole = self._whole.get(other)
-                        if whole is None:
-                            waiting.append(other)
-                        else:
-                            found |= whole
-            known = self._whole[name] = frozenset(found)
-        return known
+        return frozenset().union(*(_whole(name, self._installed_with, self._whole) for name in names))
 
     @cached_method
     def _installed_with(self, name: str) -> tuple[str, ...]:
@@ -1090,6 +1075,25 @@ class TargetView:
             role = "test" if for_tests(found.conditions) else "build"
             required = self.certain(found.conditions)
             yield Need("program", found.name, providers, found.at, role, certain, required)
+
+
+def _whole(
+    name: str, leads: Callable[[str], Iterable[str]], known: dict[str, frozenset[str]]
+) -> frozenset[str]:
+    """A name and everything that it leads to. known: of other names, and of this one from now on."""
+    if name not in known:
+        found, waiting = {name}, [name]
+        while waiting:
+            for other in leads(waiting.pop()):
+                if other in found:
+                    continue
+                found.add(other)
+                if other in known:
+                    found |= known[other]
+                else:
+                    waiting.append(other)
+        known[name] = frozenset(found)
+    return known[name]
 
 
 def _without_broad(found: list[Provider]) -> list[Provider]:

@@ -37,13 +37,9 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 def dependency_by_chance(view: TargetView, package: Package):
     declared = view.declared(package)
     for name, needs in find_undeclared(view, package).borrowed.items():
-        strong = [
-            need
-            for need in needs
-            if need.certain and (need.required or need.how == "program") and is_chance(view, package, need, name)
-        ]
-        if strong:
-            first = min(strong, key=weight)
+        strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
+        first = next((need for need in sorted(strong, key=weight) if is_chance(view, package, need, name)), None)
+        if first is not None:
             sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
             yield Diagnostic(
                 first.at,
