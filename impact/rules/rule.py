@@ -27,8 +27,8 @@ Its scope says what it is called with, and how often:
                                                   when there is an install space
     targets        views                          once, with all targets together; it yields (view, diagnostic)
 
-A rule of the scope `package` may yield Upcoming as well, which is rated package by package. All that a rule is written
-with, beside the model and the target, is imported from here.
+A rule of the scope `package` may yield Upcoming as well, which is rated package by package. What rules are written with
+is imported from vocabulary.py.
 
 It yields diagnostics: data, not text. What differs between targets (a version, a date) is data of one diagnostic for
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.

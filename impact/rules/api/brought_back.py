@@ -4,11 +4,10 @@ from functools import cached_property
 from typing import Literal
 
 from ...model.package import is_header
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import excuses
 from ...targets.providers.library import include_roots
 from ...targets.target import ChangeInForce
+from ..vocabulary import Package, TargetView
 
 _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
 

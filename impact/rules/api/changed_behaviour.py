@@ -23,13 +23,11 @@ Not reported
 from collections.abc import Iterator, Sequence
 
 from ...model.package import NameUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import ChangeRow, all_uses, behaves_differently
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.evidence_record import Evidence
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .diagnosis import is_of_another_distro
 
 

@@ -20,14 +20,12 @@ Not reported
 
 from functools import cache
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.surface.offers_cpp import defaults_changed
 from ...targets.symbol import Availability
 from ...targets.version import at_least
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .uses import list_cpp_uses
 
 

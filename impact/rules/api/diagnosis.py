@@ -3,11 +3,20 @@
 from collections.abc import Collection, Iterable, Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, Doubt, FixAction, Text, Together, Upcoming, Value, doubts_of_place
+from ..vocabulary import (
+    Diagnostic,
+    Doubt,
+    FixAction,
+    Package,
+    TargetView,
+    Text,
+    Together,
+    Upcoming,
+    Value,
+    doubts_of_place,
+)
 
 UPSTREAM = "{upstream}[[ {version}]]"
 """The package or library that decides, in the version that the target has."""

@@ -28,10 +28,8 @@ from typing import NamedTuple
 
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "include `{replacement}`"
 

@@ -29,9 +29,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rule
 from .diagnosis import (
     GONE_PACKAGE,
     UPSTREAM,

@@ -24,8 +24,7 @@ Not reported
 """
 
 from ...model.cmake.build import FoundPackage
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, doubts_of_place, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
 TEXTS = {

@@ -30,9 +30,7 @@ from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import (
     GONE_PACKAGE,
     availability_texts,

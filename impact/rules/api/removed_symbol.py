@@ -33,15 +33,13 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.package import NameUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.changes import excuses, removed_in
 from ...targets.providers.stdlib import stood_in_for
 from ...targets.symbol import Symbol
 from ...targets.target import ChangeInForce
 from ...targets.version import parts
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .brought_back import Headers
 from .diagnosis import UPSTREAM, availability_texts, diagnose
 from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted

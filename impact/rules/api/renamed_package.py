@@ -23,8 +23,7 @@ Not reported
     does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
-from ...model.view import TargetView
-from ..rule import rule
+from ..vocabulary import TargetView, rule
 from .removed_package import TEXTS, list_gone_packages
 
 

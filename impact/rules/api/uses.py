@@ -5,18 +5,15 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...facts.condition import Condition
-from ...model.cmake.build import At
 from ...model.package import CppApiUse, PythonApiUse
 from ...model.python.api import packages_of
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import function_of
 from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
 from ...targets.surface.overrides import class_of, says_override
 from ...targets.symbol import Availability
-from ..rule import Doubt, doubts_of_place
+from ..vocabulary import At, Doubt, Package, TargetView, doubts_of_place
 
 
 class UnservedUse(NamedTuple):

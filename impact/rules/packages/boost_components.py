@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import linked_items
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP
+from ..vocabulary import Package, TargetView
 from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, linked_packages, list_linked, stem_of
 
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 
 from ...model.cmake.links import linked_items
-from ...model.view import TargetView
+from ..vocabulary import TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).

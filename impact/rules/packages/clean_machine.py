@@ -7,10 +7,8 @@ of the workspace bring.
 
 import re
 
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
 from ..evidence import circular
-from ..rule import Doubt
+from ..vocabulary import Doubt, Need, Package, TargetView
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""

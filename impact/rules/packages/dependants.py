@@ -3,8 +3,7 @@
 from ....edges.memory import kept_with
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 
 def compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:

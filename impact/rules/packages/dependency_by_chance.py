@@ -23,9 +23,7 @@ Not reported
     whoever starts launch files has; conditional code.
 """
 
-from ...model.view import TargetView, weight
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, Together, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, rule, weight
 from .clean_machine import doubts_of_chance, is_chance
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 

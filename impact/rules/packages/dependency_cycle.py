@@ -19,8 +19,7 @@ Not reported
     Cycles that only exist with test or documentation dependencies: colcon ignores those that would close a cycle.
 """
 
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, rule
 
 # Every cycle that is found is cut, and the rest searched again. A workspace in which all packages need each other has
 # about as many cycles as dependencies; the first ones are enough.

@@ -4,10 +4,8 @@ from collections.abc import Iterator, Set
 from typing import NamedTuple
 
 from ....edges.memory import kept_with
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
 from ..evidence import circular
-from ..rule import Declare, Remove
+from ..vocabulary import Declare, Need, Package, Remove, TargetView
 from .clean_machine import TEST_HEADERS
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.

@@ -5,8 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import Install
 from ...model.cmake.installed import copied_files, lets_in
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 
 def list_installing(view: TargetView) -> Iterator[tuple[Package, list[Install]]]:

@@ -22,9 +22,7 @@ Use instead
 import re
 
 from ...facts.manifest import ANY_FORMAT
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Replace, Text, Workspace, rule
 
 _HELP = "[[write `{replacement}`]]"
 _TAGS = {

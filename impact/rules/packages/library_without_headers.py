@@ -22,9 +22,7 @@ Not reported
 
 import re
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind
 
 

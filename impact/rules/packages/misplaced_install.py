@@ -31,8 +31,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.installed import copied_files
 from ...model.cmake.links import linked_items, package_of
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_installing, list_references
 
 

@@ -30,11 +30,10 @@ from collections.abc import Iterator
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
-from ...model.view import Need, TargetView, interface_of
-from ...model.workspace import Package
+from ...model.view import interface_of
 from ...targets.providers.libraries import system_libraries
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .unset_library_variable import fold
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.

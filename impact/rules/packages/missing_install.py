@@ -30,8 +30,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_installing, list_references
 
 _ONCE = (Together("no target installed"),)

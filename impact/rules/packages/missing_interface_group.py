@@ -23,10 +23,8 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Declare, Diagnostic, Doubt, Text, rule
+from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _GROUP = "rosidl_interface_packages"
 # From here on, at the latest, rosidl_generate_interfaces() asks. Source: its CMake code in rosidl_cmake, whose change

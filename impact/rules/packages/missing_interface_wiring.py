@@ -21,9 +21,8 @@ Not reported
 import re
 
 from ....edges.reach import walk
-from ...model.view import TargetView, interface_of
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Insert, Text, rule
+from ...model.view import interface_of
+from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, rule
 
 
 @rule(

@@ -22,10 +22,8 @@ Not reported
 import re
 
 from ...model.misspelling import is_slip
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, Doubt, Replace, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, Together, rule
 
 _SUFFIXES = (
     "_INCLUDE_DIRS",

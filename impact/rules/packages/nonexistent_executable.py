@@ -28,9 +28,7 @@ from fnmatch import fnmatchcase
 
 from ...model.package import ReferenceUse
 from ...model.python.programs import list_programs
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 
 
 @rule(

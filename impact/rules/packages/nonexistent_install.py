@@ -27,9 +27,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .absent_paths import is_absent
 from .install_rules import list_installing
 

@@ -25,10 +25,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.setup import SetupFile
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 from .absent_paths import is_absent
 
 _PATTERN = re.compile(r"[*?\[]")

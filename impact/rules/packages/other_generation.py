@@ -15,10 +15,8 @@ Use instead
     <buildtool_depend condition="$ROS_VERSION == 1">catkin</buildtool_depend>
 """
 
-from ...model.cmake.build import At
 from ...model.package import build_type_of
-from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 
 @rule(

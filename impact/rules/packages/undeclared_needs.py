@@ -4,10 +4,8 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...model.misspelling import folded, one_edit
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
 from ..evidence import circular, name_to_declare, present
-from ..rule import Declare
+from ..vocabulary import Declare, Need, Package, TargetView
 from .clean_machine import TEST_HEADERS
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")

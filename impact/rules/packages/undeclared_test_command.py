@@ -22,11 +22,9 @@ Not reported
 """
 
 from ....edges.memory import kept_with
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Provider
 from ..evidence import present
-from ..rule import Declare, Diagnostic, Doubt, Text, rule
+from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 # What the packages that make tests of some kind are made of.
 _TESTS = "ament_cmake_test"

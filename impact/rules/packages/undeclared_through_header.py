@@ -23,10 +23,8 @@ Not reported
 """
 
 from ....edges.memory import kept_with
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Provider
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .clean_machine import doubts_of_compiled
 
 

@@ -18,9 +18,7 @@ Not reported
     What another dependency that is passed on brings.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind, list_wrong_kinds
 
 _ONCE = (Together("not handed on"),)

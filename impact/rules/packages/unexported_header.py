@@ -28,13 +28,10 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.cmake.installed import installed_headers
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 from .ament_exports import list_installed_targets
 
 

@@ -27,9 +27,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import CMakeExport
 from ...model.cmake.links import exported_targets
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
 from .include_folders import OFF_PATH
 

@@ -30,9 +30,7 @@ import re
 from ....edges.memory import kept_with
 from ...model.cmake.build import for_tests
 from ...model.unknown_contents import FINDING
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 from .undeclared_test_command import find_test_commands
 
 

@@ -30,9 +30,7 @@ from collections.abc import Callable, Iterable, Iterator, Set
 from functools import cache, partial
 
 from ...model.cmake.links import may_hide, package_of, reached_targets
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, doubts_of_folder, shares_one_folder
 
 _FindGiven = Callable[[str], set[str] | None]

@@ -27,10 +27,8 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_installing, list_places, list_references
 

@@ -24,10 +24,8 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, rule
 from .install_rules import is_installed, list_installing
 
 

@@ -19,9 +19,7 @@ Not reported
 
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 from .unlinked_library import COMPILED
 

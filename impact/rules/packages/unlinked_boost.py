@@ -27,10 +27,8 @@ Not reported
 
 from collections.abc import Iterator, Set
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import BOOST_COMPILED, compiled_component
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .boost_components import BoostComponents, find_linked_components, lacks_boost, list_asked_components
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"

@@ -26,9 +26,7 @@ Not reported
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, plain, stem_of
 
 COMPILED = (

@@ -24,8 +24,7 @@ Not reported
     on the target, and packages with a known successor (renamed-package and removed-package say it).
 """
 
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, rule
 
 _HELP = "bring its source into the workspace, or put a condition on the dependency"
 

@@ -36,10 +36,8 @@ from functools import lru_cache
 
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Resolution
-from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Remove, Replace, TargetView, Text, rule
 from .used_names import list_used_names, shows_uses, stands_in_cmake
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"

@@ -24,10 +24,8 @@ Not reported
 
 from collections.abc import Generator, Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least, compare
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(

@@ -21,10 +21,8 @@ Not reported
     Requests beside another one for the same library that the platform satisfies; libraries whose version is not known.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import satisfies
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

@@ -23,10 +23,8 @@ Not reported
 """
 
 from ...facts.manifest import Dependency
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import compare
-from ..rule import Diagnostic, Doubt, Text, Upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, rule
 
 _HOLDS = {
     "version_lt": lambda c: c < 0,
