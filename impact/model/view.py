@@ -18,6 +18,7 @@ from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
+from ..facts.manifest import Dependency
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, ChangeRow
 from ..targets.distro.distro import DistroTarget
@@ -137,18 +138,19 @@ class TargetView:
 
     def everyone(self) -> Iterator[Package]:
         """All packages of the workspace that are built on this target."""
-        for package in self.workspace:
-            if package.build_type.startswith("ament") and self.target.ros == 1:
-                continue
-            if package.build_type == "catkin" and self.target.ros == 2:
-                continue
-            yield package
+        return filter(self.builds, self.workspace)
+
+    def builds(self, package: Package) -> bool:
+        """False for a package that is built with the tools of the other generation of ROS."""
+        return package.build_type != "catkin" if self.target.ros == 2 else not package.build_type.startswith("ament")
 
     @cached_property
     def environment(self) -> Environment:
         """What conditions are evaluated against."""
-        target = self.target
+        return self._environment_on(self.target)
 
+    @cached_method
+    def _environment_on(self, target: DistroTarget) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
 
@@ -159,7 +161,7 @@ class TargetView:
             codename=target.platform.split(" ")[-1],
             versions=version,
             packages=lambda name: self._has_package(name, target),
-            headers=self._has_header,
+            headers=self._has_header if target is self.target else lambda path: None,
             testing=True,
             gone=lambda kind, name: self._is_gone(kind, name, target),
         )
@@ -241,10 +243,19 @@ class TargetView:
 
     def active_manifest(self, condition: str) -> bool:
         """False only when the condition attribute of a dependency surely does not hold on the target."""
-        return self.active((Condition("manifest", condition),))
+        return not condition or self.active((Condition("manifest", condition),))
 
-    def manifest_place(self, package: Package, dependency) -> At:
-        """Where a dependency is declared."""
+    def dependencies(self, package: Package) -> Iterator[Dependency]:
+        """What the manifest of a package declares on this target to be installed."""
+        for dependency in package.manifest.dependencies:
+            installed = dependency.kind not in ("conflict", "replace", "group", "member_of_group")
+            if installed and self.active_manifest(dependency.condition):
+                yield dependency
+
+    def manifest_place(self, package: Package, dependency: Dependency | str) -> At:
+        """Where a dependency is declared, or the first of a name."""
+        if isinstance(dependency, str):
+            dependency = next(one for one in package.manifest.dependencies if one.name == dependency)
         return At(package.digest.manifest_path, dependency.line, dependency.column)
 
     @cached_property
@@ -399,10 +410,6 @@ class TargetView:
             if change.new and name in (change.old, change.package):
                 return f"depend on `{change.new}`"
         return ""
-
-    def last_distro(self, name: str) -> str:
-        """The newest distro that has released a package, empty when none has."""
-        return self.target.last_distro(name)
 
     @property
     def underlaid(self) -> bool:
@@ -563,18 +570,6 @@ class TargetView:
         """The same on the newest distro."""
         return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
 
-    @cached_method
-    def _environment_on(self, target: DistroTarget) -> Environment:
-        def version(name: str) -> str | None:
-            return target.version(name) or target.library(name.lower())
-
-        return Environment(
-            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else None,
-            codename=target.platform.split(" ")[-1], versions=version,
-            packages=lambda name: self._has_package(name, target), testing=True,
-            gone=lambda kind, name: self._is_gone(kind, name, target),
-        )  # fmt: skip
-
     @property
     def horizon(self) -> str:
         """Name of the newest distro of this generation, see newest."""
@@ -606,27 +601,19 @@ class TargetView:
     @cached_method
     def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
-        return MappingProxyType(self._declares(package))
-
-    def _declares(self, package: Package) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}
-        for dependency in package.manifest.dependencies:
-            if dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-                continue
-            if dependency.condition and not self.active([Condition("manifest", dependency.condition)]):
-                continue
+        for dependency in self.dependencies(package):
             found.setdefault(dependency.name, set()).add(dependency.kind)
-        return found
+        return MappingProxyType(found)
 
-    def installed_with(self, name: str) -> Iterable[str]:
+    @cached_method
+    def installed_with(self, name: str) -> tuple[str, ...]:
         """Direct dependencies that come with a package or key when it is installed."""
         package = self.workspace.packages.get(name)
         if package is not None:
-            return [n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH]
-        released = self.target.dependencies(name) or self.target.similar_dependencies(name)
-        if released is None:
-            return ()
-        return [d.name for d in released if d.kind in _INSTALLED_WITH]
+            return tuple(n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH)
+        released = self.target.dependencies(name) or self.target.similar_dependencies(name) or ()
+        return tuple(d.name for d in released if d.kind in _INSTALLED_WITH)
 
     @cached_method
     def closure(self, package: Package) -> frozenset[str]:
@@ -673,10 +660,10 @@ class TargetView:
     @cached_method
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages:
-            return self._installed_with(name)
+            return self.installed_with(name)
         if self.target.dependencies(name) is None:
             return self.target.possible_dependencies(name)
-        return self.target.later_dependencies(name).union(self._installed_with(name))
+        return self.target.later_dependencies(name).union(self.installed_with(name))
 
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
@@ -687,7 +674,7 @@ class TargetView:
         queue = deque(found)
         while queue:
             name = queue.popleft()
-            for other in self._installed_with(name):
+            for other in self.installed_with(name):
                 if other not in found:
                     found[other] = found[name]
                     queue.append(other)
@@ -699,11 +686,7 @@ class TargetView:
 
     @cached_method
     def _spread(self, names: frozenset[str]) -> frozenset[str]:
-        return frozenset().union(*(_whole(name, self._installed_with, self._whole) for name in names))
-
-    @cached_method
-    def _installed_with(self, name: str) -> tuple[str, ...]:
-        return tuple(self.installed_with(name))
+        return frozenset().union(*(_whole(name, self.installed_with, self._whole) for name in names))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
@@ -902,24 +885,18 @@ class TargetView:
             if not providers:
                 self.unresolved["cmake"].add(found.name)
                 continue
-            testing = for_tests(found.conditions)
+            role, how = _role_of(found.conditions), "find_package" if found.how == "find_package" else "component"
+            in_tests = role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
             certain = self.certain(found.conditions)
-            yield Need(
-                "find_package" if found.how == "find_package" else "component",
-                found.name,
-                providers,
-                found.at,
-                "test"
-                if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
-                else "build",
-                certain,
+            required = (
                 found.required
                 or (found.how == "catkin" and not found.quiet)
                 or (found.name == "PkgConfig" and self._requires_modules(package))
                 or self._is_called(package, found.name)
-                or (not found.required and self._is_linked(package, found.name)),
+                or self._is_linked(package, found.name)
             )
-            yield from self._parts_asked(found, testing, certain)
+            yield Need(how, found.name, providers, found.at, "test" if in_tests else role, certain, required)
+            yield from self._parts_asked(found, role, certain)
         if self.target.version("ros_environment") is not None:
             yield from self._environment_read(package)
         for include in digest.includes:
@@ -963,15 +940,8 @@ class TargetView:
             if not self.is_package(name) and not (".launch" in use.at.path and _PACKAGE.match(name)):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
-            yield Need(
-                how,
-                name,
-                (Provider("ros", name),),
-                use.at,
-                use.role,
-                not reference.conditional,
-                not reference.conditional,
-            )
+            certain = not reference.conditional
+            yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
 
     def _environment_read(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
@@ -987,8 +957,7 @@ class TargetView:
                     read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
         for name, at, conditions in read:
             if self.active(conditions):
-                role = "test" if for_tests(conditions) else "build"
-                yield Need("environment", name, providers, at, role, self.certain(conditions))
+                yield Need("environment", name, providers, at, _role_of(conditions), self.certain(conditions))
 
     def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
@@ -1044,18 +1013,10 @@ class TargetView:
         # Also where its module has more words in its name than the package (orocos-bfl of bfl).
         words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.version(word) is not None)
         providers = (*providers, *(Provider("ros", word, "", False) for word in words))
-        testing = for_tests(found.conditions)
-        yield Need(
-            "pkg-config",
-            found.name,
-            providers,
-            found.at,
-            "test" if testing else "build",
-            self.certain(found.conditions),
-            found.required,
-        )
+        certain = self.certain(found.conditions)
+        yield Need("pkg-config", found.name, providers, found.at, _role_of(found.conditions), certain, found.required)
 
-    def _parts_asked(self, found: FoundPackage, testing: bool, certain: bool) -> Iterator[Need]:
+    def _parts_asked(self, found: FoundPackage, role: str, certain: bool) -> Iterator[Need]:
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
@@ -1064,7 +1025,7 @@ class TargetView:
                 # The component's own package is what to declare, not one that has all of them.
                 providers = tuple(sorted(installed, key=lambda p: component.lower() not in p.name))
                 if providers:
-                    yield Need("part", name, providers, at, "test" if testing else "build", certain)
+                    yield Need("part", name, providers, at, role, certain)
 
     def _program_run(self, found: FoundPackage) -> Iterator[Need]:
         """A program that CMake starts; those that every machine has are left out. What a package builds where a library
@@ -1072,9 +1033,13 @@ class TargetView:
         providers = tuple(self.providers.executable(found.name))
         if providers and providers[0].name and found.name not in self.apt.base:
             certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
-            role = "test" if for_tests(found.conditions) else "build"
             required = self.certain(found.conditions)
-            yield Need("program", found.name, providers, found.at, role, certain, required)
+            yield Need("program", found.name, providers, found.at, _role_of(found.conditions), certain, required)
+
+
+def _role_of(conditions: Iterable[Condition]) -> str:
+    """What is built under conditions: tests or the rest."""
+    return "test" if for_tests(conditions) else "build"
 
 
 def _whole(

@@ -1,12 +1,7 @@
-"""What several rules ask: what can be had on a target, by what name one declares it, what leads in a circle."""
+"""What several rules ask: by what name one declares what is needed, and what leads in a circle."""
 
 from ..model.view import Need, TargetView
 from ..model.workspace import Package
-
-
-def present(view: TargetView, name: str) -> bool:
-    """True when a dependency of this name can be had on the target: in the workspace, released, or a rosdep key."""
-    return view.available(name)
 
 
 def circular(view: TargetView, package: Package, name: str) -> bool:
@@ -24,7 +19,7 @@ def name_to_declare(view: TargetView, need: Need) -> str | None:
     the package that is named by its form, wherever it comes from."""
     other = "python3-" if view.target.python_major == 2 else "python-"
     for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
-        if provider.name and present(view, provider.name):
+        if provider.name and view.available(provider.name):
             return provider.name
     first = need.providers[0]
     if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:

@@ -115,7 +115,7 @@ def find_gone_package(
         return
     found = find_missing(view, "package", upstream, ())
     if found is not None and found.state in ("removed", "not yet"):
-        last = view.last_distro(upstream)
+        last = view.target.last_distro(upstream)
         data = {
             "upstream": upstream, "distro": view.target.distro, "replacement": view.successor(upstream),
             "last": last if found.state == "removed" and last != view.target.distro else "",

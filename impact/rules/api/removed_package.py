@@ -48,7 +48,7 @@ def list_gone_packages(view: TargetView, kind: str):
             (d.name, "declared", view.manifest_place(package, d),
              (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
             for d in package.manifest.dependencies
-            if d.kind not in ("conflict", "replace") and (not d.condition or view.active_manifest(d.condition))
+            if d.kind not in ("conflict", "replace") and view.active_manifest(d.condition)
         ]  # fmt: skip
         uses += [
             (f.name, "found", f.at, _doubts_of_search(view, f))

@@ -1,6 +1,6 @@
 """Dependencies that are declared, and not for what they are used, as the rules on them ask for it."""
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Set
 from typing import NamedTuple
 
 from ....edges.memory import kept_with
@@ -26,12 +26,8 @@ class WrongKind(NamedTuple):
 
 
 @kept_with
-def list_wrong_kinds(view: TargetView, package: Package) -> list[WrongKind]:
+def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
-    return list(_list_wrong_kinds(view, package))
-
-
-def _list_wrong_kinds(view: TargetView, package: Package) -> Iterator[WrongKind]:
     declared = view.declared(package)
     seen: set[str] = set()
     brought: dict[Set[str], frozenset[str]] = {}

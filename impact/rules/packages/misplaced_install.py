@@ -31,12 +31,11 @@ from collections.abc import Iterator
 
 from ...model.cmake.installed import copied_files
 from ...model.cmake.links import linked_items, package_of
-from ..vocabulary import Diagnostic, Doubt, TargetView, Text, Together, rule
-from .install_rules import is_installed, list_installing, list_references
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_references, read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "doubled": Text(
@@ -71,16 +70,10 @@ from .install_rules import is_installed, list_installing, list_references
         ),
     },
 )
-def misplaced_install(view: TargetView):
-    references = list_references(view)
-    for package, installs in list_installing(view):
-        yield from _list_doubled(view, package, installs)
-        yield from _list_not_executable(view, package, installs)
-        yield from _list_renamed(view, package, installs)
-        yield from _list_components(view, package, installs)
-        yield from _list_programs(view, package, installs, references.get(package.name, {}).get("executable", set()))
-        yield from _list_other_python(view, package, installs)
-        yield from _list_plain(view, package, installs)
+def misplaced_install(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    for find in _FAULTS if installs else ():
+        yield from find(view, package, installs)
 
 
 def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
@@ -203,9 +196,9 @@ def _list_placed(installs) -> dict[str, list]:
     return placed
 
 
-def _list_programs(view: TargetView, package, installs, started: set[str]) -> Iterator[Diagnostic]:
+def _list_programs(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Nodes of ROS 2, and programs that a launch file starts, that no rule installs where those who start them look."""
-    placed = _list_placed(installs)
+    started, placed = list_references(view, package, "executable"), _list_placed(installs)
     for target in package.build.targets:
         if target.kind != "executable" or target.name not in placed:
             continue
@@ -255,3 +248,9 @@ def _list_plain(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 data = {"platform": target.platform, "cure": cure}
                 doubts = (Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
                 yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
+
+
+_FAULTS = (
+    *(_list_doubled, _list_not_executable, _list_renamed, _list_components, _list_programs, _list_other_python),
+    _list_plain,
+)

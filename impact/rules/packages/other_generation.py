@@ -43,7 +43,7 @@ def _other(view: TargetView, package) -> bool:
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)
     return build_type.startswith(tool) and any(
-        d.name.startswith(tool) and (not d.condition or view.active_manifest(d.condition))
+        d.name.startswith(tool) and view.active_manifest(d.condition)
         for d in package.manifest.dependencies
         if d.kind in ("buildtool", "build")
     )

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...model.misspelling import folded, one_edit
-from ..evidence import circular, name_to_declare, present
+from ..evidence import circular, name_to_declare
 from ..vocabulary import Declare, Need, Package, TargetView
 from .clean_machine import TEST_HEADERS
 
@@ -26,7 +26,7 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
     closure, declared = view.closure(package), view.declared(package)
     found = Undeclared({}, {})
-    elsewhere = {d.name for d in package.manifest.dependencies if not present(view, d.name)}  # for other distros
+    elsewhere = {d.name for d in package.manifest.dependencies if not view.available(d.name)}  # for other distros
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
@@ -69,9 +69,9 @@ def _describe_use(need: Need) -> str:
 def declare_need(view: TargetView, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
     """Declares what answers a need; nothing where the manifest has the name with a letter wrong, which another rule
     repairs."""
-    if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
+    if any((folded(d) == folded(name) or one_edit(d, name)) and not view.available(d) for d in view.declared(package)):
         return ()
-    if circular(view, package, name) or not present(view, name):
+    if circular(view, package, name) or not view.available(name):
         return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 

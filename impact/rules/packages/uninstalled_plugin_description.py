@@ -25,12 +25,11 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import role_of_folder
-from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, rule
-from .install_rules import is_installed, list_installing
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
+from .install_rules import is_installed, read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "no description": Text("the exported plugin description `{subject}` does not exist", "correct the path"),
@@ -44,8 +43,9 @@ from .install_rules import is_installed, list_installing
         ),
     },
 )
-def uninstalled_plugin_description(view: TargetView):
-    for package, installs in list_installing(view):
+def uninstalled_plugin_description(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    if installs is not None:
         yield from _list_descriptions(view, package, installs)
         yield from _list_not_exported(view, package, installs)
 

@@ -42,24 +42,20 @@ def unreleased_package(view: TargetView):
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:
         seen = set()
-        for dependency in package.manifest.dependencies:
+        for dependency in view.dependencies(package):
             name = dependency.name
-            if name in seen or name in gone or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-                continue
-            if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
+            if name in seen or name in gone or view.available(name):
                 continue
             if not target.ever_released(name) or view.private(name) or view.successor(name):
                 continue
             if view.unknown_contents.is_of_submodule(name):
-                continue
-            if dependency.condition and not view.active_manifest(dependency.condition):
                 continue
             seen.add(name)
             used = any(
                 need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
                 for need in view.needs(package)
             )
-            last = view.last_distro(name) or ""
+            last = target.last_distro(name)
             yield Diagnostic(
                 view.manifest_place(package, dependency),
                 name,

@@ -69,5 +69,4 @@ def unused_dependency(view: TargetView, package: Package):
             continue
         if view.debian(name) & debian or (view.target.version(name) is None and name not in view.workspace.packages):
             continue
-        place = next(d for d in package.manifest.dependencies if d.name == name)
-        yield Diagnostic(view.manifest_place(package, place), name, package.name)
+        yield Diagnostic(view.manifest_place(package, name), name, package.name)
