@@ -6,7 +6,6 @@ This is the join that most rules ask: model by target. Nothing here reads files.
 from __future__ import annotations
 
 import re
-from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
@@ -189,10 +188,7 @@ class TargetView:
                 return change.state == "deprecated"
             if change.new == path:
                 return change.state != "absent"
-        known = {
-            self.providers.has_header(p.name, path, self.target.distro, version)
-            for p in self.header(path) if p.kind == "ros" and (version := self.target.version(p.name))
-        }  # fmt: skip
+        known = {*self._releases_having(path, self.header(path)).values()}
         if True in known or known == {False}:
             return True in known
         found = self.header_availability(path)
@@ -371,10 +367,6 @@ class TargetView:
         """Whether the parts of a generated header lie in a folder of their own."""
         return at_least(self.target.version("rosidl_generator_cpp") or "0.9.0", "0.9.0")
 
-    def has_header(self, path: str) -> bool:
-        """True when a header of the workspace answers an include path."""
-        return bool(self._files_of(path))
-
     @cached_method
     def _files_of(self, path: str) -> tuple[str, ...]:
         """The headers of the workspace that an include path names; a file's own path names itself."""
@@ -455,7 +447,7 @@ class TargetView:
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
-        if not lacking or any(self.providers.has_header(n, path, target.distro, v) is not False for n, v in lacking):
+        if not lacking or any(self.has_released_header(name, path) is not False for name, _ in lacking):
             return None
         name, version = lacking[0]
         if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
@@ -464,10 +456,10 @@ class TargetView:
             return None  # a release without any header in its tree gets them while it is built
         if not self.providers.header_history(name, path):
             head, _, rest = path.partition("/")
-            if rest.startswith(head + "/") and self.providers.has_header(name, rest, target.distro, version):
+            if rest.startswith(head + "/") and self.has_released_header(name, rest):
                 return Availability(symbol, "removed", name, version, replacement=rest, form="nested")
             return None
-        other = self._renamed(name, path, version)
+        other = self._renamed(name, path)
         evidence = Evidence(name, "removed", path, other, "header", header=path)
         return Availability(symbol, "removed", name, version, replacement=other, evidence=evidence)
 
@@ -476,23 +468,19 @@ class TargetView:
         version = self.target.version(package)
         return self.providers.has_header(package, path, self.target.distro, version) if version else None
 
+    def _releases_having(self, path: str, providers: Iterable[Provider]) -> dict[str, bool | None]:
+        """The same by the packages among providers that the target has."""
+        named = (p.name for p in providers if p.kind == "ros" and self.target.version(p.name))
+        return {name: self.has_released_header(name, path) for name in named}
+
     def nested_header(self, package: str, path: str) -> bool:
         """True when the release has the header in a subfolder that it exports too (xmlrpcpp/XmlRpc.h as XmlRpc.h)."""
-        version = self.target.version(package)
-        return (
-            "/" not in path
-            and bool(version)
-            and bool(self.providers.has_header(package, f"{package}/{path}", self.target.distro, version))
-        )
+        return "/" not in path and bool(self.has_released_header(package, f"{package}/{path}"))
 
-    def _renamed(self, name: str, path: str, version: str) -> str:
-        """The same header under another ending that the version has."""
-        stem = path.rpartition(".")[0]
-        for ending in (".hpp", ".h", ".hh"):
-            other = stem + ending
-            if other != path and self.providers.has_header(name, other, self.target.distro, version):
-                return other
-        return ""
+    def _renamed(self, name: str, path: str) -> str:
+        """The same header under another ending that the release has."""
+        others = (path.rpartition(".")[0] + ending for ending in (".hpp", ".h", ".hh"))
+        return next((other for other in others if other != path and self.has_released_header(name, other)), "")
 
     @cached_method
     def around(self, path: str) -> frozenset[str]:
@@ -668,18 +656,6 @@ class TargetView:
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
 
-    def brought_by(self, package: Package) -> dict[str, str]:
-        """The names of closure(), each with the declared name that brings it on the shortest way, or an empty text."""
-        found = {n: n for n in self._built_with(package)}
-        queue = deque(found)
-        while queue:
-            name = queue.popleft()
-            for other in self.installed_with(name):
-                if other not in found:
-                    found[other] = found[name]
-                    queue.append(other)
-        return {**dict.fromkeys(self.preinstalled, ""), package.name: package.name, **found}
-
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
         return self._spread(frozenset(names))
@@ -789,12 +765,7 @@ class TargetView:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
         if len(found) < 2:
             return found
-        has = {
-            p.name: self.providers.has_header(p.name, path, self.target.distro, version)
-            for p in found
-            if p.kind == "ros" and p.name not in self.workspace.packages
-            and (version := self.target.version(p.name))
-        }  # fmt: skip
+        has = self._releases_having(path, (p for p in found if p.name not in self.workspace.packages))
         return [p for p in found if has.get(p.name) is not False] if True in has.values() else found
 
     def is_package(self, name: str) -> bool:

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Set
 from typing import NamedTuple
 
 from ....edges.memory import kept_with
-from ..evidence import circular
 from ..vocabulary import Declare, Need, Package, Remove, TargetView
-from .clean_machine import TEST_HEADERS
+from .clean_machine import TEST_HEADERS, circular
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
 _FOR_BUILD = frozenset({"build", "buildtool"})

@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...model.misspelling import folded, one_edit
-from ..evidence import circular, name_to_declare
 from ..vocabulary import Declare, Need, Package, TargetView
-from .clean_machine import TEST_HEADERS
+from .clean_machine import TEST_HEADERS, circular
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>` to {manifest}"
@@ -33,11 +32,25 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         carried = need.providers[0].kind == "system" and need.how != "import"
         if carried and view.unknown_contents.is_likely(package, need.subject):
             continue
-        name = name_to_declare(view, need)
+        name = _name_to_declare(view, need)
         if name is not None and name != package.name and name not in elsewhere:
             kind = found.borrowed if view.answered(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
+
+
+def _name_to_declare(view: TargetView, need: Need) -> str | None:
+    """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
+    the package that is named by its form, wherever it comes from."""
+    other = "python3-" if view.target.python_major == 2 else "python-"
+    for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
+        if provider.name and view.available(provider.name):
+            return provider.name
+    first = need.providers[0]
+    if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:
+        return None
+    meant = first.name == need.subject.partition(".")[0] and not view.target.other_generation(first.name)
+    return first.name if meant else None
 
 
 def describe_need(package: Package, need: Need) -> dict[str, str]:
