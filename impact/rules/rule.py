@@ -45,7 +45,7 @@ from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
 from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import Doubt, Together, doubts_of_place, severity
+from .severity import SEVERITIES, Doubt, Together, doubts_of_place, severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 
@@ -55,7 +55,6 @@ __all__ = [
     "groups", "rate_upcoming", "rule", "severity",
 ]  # fmt: skip
 
-SEVERITIES = ("note", "warning", "error")
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
 
