@@ -356,10 +356,9 @@ class TargetView:
         """The interfaces of a package of the workspace, by `msg/Name`."""
         known = message_headers.Definitions()
         for file in self.workspace.packages[package].digest.interfaces:
-            kind = file.definition.kind
-            known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
-                file.definition
-            )
+            made = file.definition
+            folder = made.module.rpartition("/")[2] if made.kind == "idl" else made.kind
+            known[f"{folder}/{file.name}"] = made
         return known
 
     @cached_property
