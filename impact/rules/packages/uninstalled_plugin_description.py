@@ -56,18 +56,16 @@ def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnost
         value = export.attributes.get("plugin", "")
         if not value.startswith("${prefix}"):
             continue
-        path = posixpath.normpath(posixpath.join(package.path, value[len("${prefix}/") :]))
+        at, file = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
+        path = posixpath.normpath(posixpath.join(package.path, file))
+        if is_installed(package, installs, path):
+            continue
         if path not in package.files:
-            if path + ".in" in package.files or is_installed(package, installs, path):
-                continue
-            at, subject = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
-            yield Diagnostic(at, subject, package.name, kind="no description", doubts=(Doubt.DISTURBS,))
-        elif package.build_type == "catkin" and not is_installed(package, installs, path):
-            at, doubts = At(package.digest.manifest_path, export.line), ()
-            if not _is_shipped(view, package, installs, path):
-                doubts = (Doubt.DISTURBS,)
-            data = {"file": value[len("${prefix}/") :]}
-            yield Diagnostic(at, posixpath.basename(path), package.name, data, "description", doubts)
+            if path + ".in" not in package.files:
+                yield Diagnostic(at, file, package.name, kind="no description", doubts=(Doubt.DISTURBS,))
+        elif package.build_type == "catkin":
+            doubts = (_is_shipped(view, package, installs, path) or Doubt.DISTURBS,)
+            yield Diagnostic(at, posixpath.basename(path), package.name, {"file": file}, "description", doubts)
 
 
 def _is_shipped(view: TargetView, package, installs, description: str) -> bool:
