@@ -712,11 +712,8 @@ class TargetView:
     @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
-        return tuple(self._header(path))
-
-    def _header(self, path: str) -> list[Provider]:
         if "/" not in path and self.is_standard(path):
-            return [Provider("system", "")]
+            return (Provider("system", ""),)
         own = self.workspace.provides_header(path)
         head = path.split("/", 1)[0]
         if (
@@ -727,10 +724,10 @@ class TargetView:
         ):
             own = []  # a file of the workspace ends like this by chance
         if own:
-            return [Provider("ros", name) for name in own]
+            return tuple(Provider("ros", name) for name in own)
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
-            return found
+            return tuple(found)
         found = self._having(path, self._bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
@@ -739,7 +736,7 @@ class TargetView:
             else:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
-        return _without_broad(found)
+        return tuple(_without_broad(found))
 
     def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the keys that bring the library of a header on other platforms than this one: whose packages were
