@@ -542,10 +542,11 @@ class TargetView:
 
     def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
         """False when a statement under these conditions surely does not count on a horizon."""
-        conditions = tuple(conditions)
-        if not conditions:
-            return True
-        return all_hold(conditions, self._environment_on(ahead.target)) is not False
+        return self._active_on(ahead.target, tuple(conditions))
+
+    @cached_method
+    def _active_on(self, target: DistroTarget, conditions: tuple[Condition, ...]) -> bool:
+        return all_hold(conditions, self._environment_on(target)) is not False
 
     def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
         """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
@@ -553,9 +554,9 @@ class TargetView:
             return self.active_on(found.horizon, conditions)
         return found.is_missing
 
-    def later_active(self, conditions: Iterable[Condition]) -> bool:
+    def later_active(self, conditions: Collection[Condition]) -> bool:
         """The same on the newest distro."""
-        return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
+        return not conditions or not self.newest or self._active_on(self.newest, tuple(conditions))
 
     @property
     def horizon(self) -> str:

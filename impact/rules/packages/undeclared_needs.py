@@ -29,11 +29,11 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        carried = need.providers[0].kind == "system" and need.how != "import"
-        if carried and view.unknown_contents.is_likely(package, need.subject):
-            continue
         name = _name_to_declare(view, need)
-        if name is not None and name != package.name and name not in elsewhere:
+        if name is None or name == package.name or name in elsewhere:
+            continue
+        carried = need.providers[0].kind == "system" and need.how != "import"
+        if not (carried and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.answered(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
