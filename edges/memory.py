@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, wraps
 from types import MethodType
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -41,13 +41,14 @@ else:
 
 def kept_with(function: Method) -> Method:
     """Runs a function once for the same arguments. The first has to have a dictionary `derived`, in which the answers
-    are kept for as long as it lives; the others have to be hashable."""
+    are kept for as long as it lives; the others have to be hashable. What a generator yields is kept as a tuple."""
 
     @wraps(function)
     def ask(holder: Any, *arguments: Any) -> Any:
         key = function, *arguments
         if key not in holder.derived:
-            holder.derived[key] = function(holder, *arguments)
+            found = function(holder, *arguments)
+            holder.derived[key] = tuple(found) if isinstance(found, Iterator) else found
         return holder.derived[key]
 
     return ask  # type: ignore[return-value]

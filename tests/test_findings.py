@@ -84,7 +84,7 @@ MERGED = [
     # another line, another subject, another severity: another finding
     ([("jazzy", hit()), ("rolling", hit(line=2))],
      [("error", 1, ("jazzy",), "gone"), ("error", 2, ("rolling",), "gone")]),
-    ([("jazzy", hit(severity="warning")), ("rolling", hit()), ("humble", hit(severity="warning"))],
+    ([("jazzy", hit(doubts=(Doubt.LATE,))), ("rolling", hit()), ("humble", hit(doubts=(Doubt.LATE,)))],
      [("error", 1, ("rolling",), "gone"), ("warning", 1, ("humble", "jazzy"), "gone")]),
     # what is still to come on one is not what broke on another
     ([("humble", hit("there, and gone", version="0.41", evidence=Evidence("tf2", "removed", ahead=True))),

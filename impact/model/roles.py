@@ -95,24 +95,16 @@ class Roles:
     @cached_method
     def exports(self, name: str) -> tuple[str, ...]:
         """What a package hands on by CMake; by its manifest where its CMake is not known."""
-        return tuple(self._exported(name))
+        own = self._view.workspace.packages.get(name)
+        handed = self._view.offers.exports(name) if own is None else self._list_own_exports(own)
+        return self.promises(name) if handed is None else tuple(key for item in handed for key in self._named(item))
 
     @cached_method
     def promises(self, name: str) -> tuple[str, ...]:
         """What the manifest of a package promises to hand on. A manifest of format 1 calls both that and what is needed
         to run `run_depend`, which promises nothing."""
-        return tuple(self._promised(name))
-
-    def _exported(self, name: str) -> Iterable[str]:
-        view = self._view
-        own = view.workspace.packages.get(name)
-        if own is not None:
-            handed = self._list_own_exports(own)
-            return self._promised(name) if handed is None else [key for item in handed for key in self._named(item)]
-        build = view.offers.exports(name)
-        if build is None:
-            return self._promised(name)
-        return [key for item in build for key in self._named(item)]
+        wanted = KINDS["run"] if self._bundles(name) else _TOOLS if self._promises_nothing(name) else _PROMISES
+        return tuple(n for n, kind in self._dependencies(name) if kind in wanted)
 
     def _list_own_exports(self, package: Package) -> list[str] | None:
         """What CMake looks for wherever it finds a package of the workspace; None where that is not known, as of a
@@ -131,21 +123,21 @@ class Roles:
     def found_with(self, names: Iterable[str]) -> frozenset[str]:
         """All that CMake may find where it finds these: of packages of the workspace what they export, of others all
         that their manifests depend on."""
-        view = self._view
-        found: set[str] = set()
-        waiting = list(names)
-        while waiting:
-            name = waiting.pop()
-            if name in found:
-                continue
-            found.add(name)
-            own = view.workspace.packages.get(name)
-            further = self._list_own_exports(own) if own is not None and own.build.files else None
-            if further is None:
-                found |= view.spread({name} | {p.name for p in view.cmake(name)})
-            else:
-                waiting.extend(further)
-        return frozenset(found)
+        walked = walk(names, lambda name: self._exported_here(name) or ())
+        return frozenset().union(*map(self._brought_along, walked))
+
+    @cached_method
+    def _exported_here(self, name: str) -> list[str] | None:
+        """What a package of the workspace exports; None for others, and where that is not known."""
+        own = self._view.workspace.packages.get(name)
+        return self._list_own_exports(own) if own is not None and own.build.files else None
+
+    @cached_method
+    def _brought_along(self, name: str) -> frozenset[str]:
+        """A name, and all that its manifest brings where it is not known what it exports."""
+        if self._exported_here(name) is not None:
+            return frozenset((name,))
+        return self._view.spread({name, *(provider.name for provider in self._view.cmake(name))})
 
     def _named(self, item: str) -> Iterable[str]:
         """The package of this name, or who answers find_package() of a system library's CMake name."""
@@ -153,10 +145,6 @@ class Roles:
         if item in view.workspace.packages or view.target.version(item) is not None:
             return (item,)
         return [provider.name for provider in view.cmake(item)]
-
-    def _promised(self, name: str) -> Iterable[str]:
-        wanted = KINDS["run"] if self._bundles(name) else _TOOLS if self._promises_nothing(name) else _PROMISES
-        return [n for n, kind in self._dependencies(name) if kind in wanted]
 
     def _promises_nothing(self, name: str) -> bool:
         """True where `run_depend` of format 1 is all that a manifest says, and CMake says more. Of released packages of

@@ -6,18 +6,18 @@ This is the join that most rules ask: model by target. Nothing here reads files.
 from __future__ import annotations
 
 import re
-from collections import deque
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cached_method
-from ...edges.reach import Reach, walk
+from ...edges.reach import Reach
 from ..conditions import Environment, all_hold
 from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
+from ..facts.manifest import Dependency
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS, ChangeRow
 from ..targets.distro.distro import DistroTarget
@@ -112,7 +112,9 @@ class TargetView:
         self.asked = asked
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
+        # By name, it and what comes along with it, and with what may come along.
         self._whole: dict[str, frozenset[str]] = {}
+        self._widest: dict[str, frozenset[str]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
@@ -135,18 +137,19 @@ class TargetView:
 
     def everyone(self) -> Iterator[Package]:
         """All packages of the workspace that are built on this target."""
-        for package in self.workspace:
-            if package.build_type.startswith("ament") and self.target.ros == 1:
-                continue
-            if package.build_type == "catkin" and self.target.ros == 2:
-                continue
-            yield package
+        return filter(self.builds, self.workspace)
+
+    def builds(self, package: Package) -> bool:
+        """False for a package that is built with the tools of the other generation of ROS."""
+        return package.build_type != "catkin" if self.target.ros == 2 else not package.build_type.startswith("ament")
 
     @cached_property
     def environment(self) -> Environment:
         """What conditions are evaluated against."""
-        target = self.target
+        return self._environment_on(self.target)
 
+    @cached_method
+    def _environment_on(self, target: DistroTarget) -> Environment:
         def version(name: str) -> str | None:
             return target.version(name) or target.library(name.lower())
 
@@ -157,7 +160,7 @@ class TargetView:
             codename=target.platform.split(" ")[-1],
             versions=version,
             packages=lambda name: self._has_package(name, target),
-            headers=self._has_header,
+            headers=self._has_header if target is self.target else lambda path: None,
             testing=True,
             gone=lambda kind, name: self._is_gone(kind, name, target),
         )
@@ -185,10 +188,7 @@ class TargetView:
                 return change.state == "deprecated"
             if change.new == path:
                 return change.state != "absent"
-        known = {
-            self.providers.has_header(p.name, path, self.target.distro, version)
-            for p in self.header(path) if p.kind == "ros" and (version := self.target.version(p.name))
-        }  # fmt: skip
+        known = {*self._releases_having(path, self.header(path)).values()}
         if True in known or known == {False}:
             return True in known
         found = self.header_availability(path)
@@ -239,10 +239,19 @@ class TargetView:
 
     def active_manifest(self, condition: str) -> bool:
         """False only when the condition attribute of a dependency surely does not hold on the target."""
-        return self.active((Condition("manifest", condition),))
+        return not condition or self.active((Condition("manifest", condition),))
 
-    def manifest_place(self, package: Package, dependency) -> At:
-        """Where a dependency is declared."""
+    def dependencies(self, package: Package) -> Iterator[Dependency]:
+        """What the manifest of a package declares on this target to be installed."""
+        for dependency in package.manifest.dependencies:
+            installed = dependency.kind not in ("conflict", "replace", "group", "member_of_group")
+            if installed and self.active_manifest(dependency.condition):
+                yield dependency
+
+    def manifest_place(self, package: Package, dependency: Dependency | str) -> At:
+        """Where a dependency is declared, or the first of a name."""
+        if isinstance(dependency, str):
+            dependency = next(one for one in package.manifest.dependencies if one.name == dependency)
         return At(package.digest.manifest_path, dependency.line, dependency.column)
 
     @cached_property
@@ -342,20 +351,15 @@ class TargetView:
         """The interfaces of a package of the workspace, by `msg/Name`."""
         known = message_headers.Definitions()
         for file in self.workspace.packages[package].digest.interfaces:
-            kind = file.definition.kind
-            known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
-                file.definition
-            )
+            made = file.definition
+            folder = made.module.rpartition("/")[2] if made.kind == "idl" else made.kind
+            known[f"{folder}/{file.name}"] = made
         return known
 
     @cached_property
     def _parts_apart(self) -> bool:
         """Whether the parts of a generated header lie in a folder of their own."""
         return at_least(self.target.version("rosidl_generator_cpp") or "0.9.0", "0.9.0")
-
-    def has_header(self, path: str) -> bool:
-        """True when a header of the workspace answers an include path."""
-        return bool(self._files_of(path))
 
     @cached_method
     def _files_of(self, path: str) -> tuple[str, ...]:
@@ -392,10 +396,6 @@ class TargetView:
             if change.new and name in (change.old, change.package):
                 return f"depend on `{change.new}`"
         return ""
-
-    def last_distro(self, name: str) -> str:
-        """The newest distro that has released a package, empty when none has."""
-        return self.target.last_distro(name)
 
     @property
     def underlaid(self) -> bool:
@@ -441,7 +441,7 @@ class TargetView:
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
-        if not lacking or any(self.providers.has_header(n, path, target.distro, v) is not False for n, v in lacking):
+        if not lacking or any(self.has_released_header(name, path) is not False for name, _ in lacking):
             return None
         name, version = lacking[0]
         if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
@@ -450,10 +450,10 @@ class TargetView:
             return None  # a release without any header in its tree gets them while it is built
         if not self.providers.header_history(name, path):
             head, _, rest = path.partition("/")
-            if rest.startswith(head + "/") and self.providers.has_header(name, rest, target.distro, version):
+            if rest.startswith(head + "/") and self.has_released_header(name, rest):
                 return Availability(symbol, "removed", name, version, replacement=rest, form="nested")
             return None
-        other = self._renamed(name, path, version)
+        other = self._renamed(name, path)
         evidence = Evidence(name, "removed", path, other, "header", header=path)
         return Availability(symbol, "removed", name, version, replacement=other, evidence=evidence)
 
@@ -462,23 +462,19 @@ class TargetView:
         version = self.target.version(package)
         return self.providers.has_header(package, path, self.target.distro, version) if version else None
 
+    def _releases_having(self, path: str, providers: Iterable[Provider]) -> dict[str, bool | None]:
+        """The same by the packages among providers that the target has."""
+        named = (p.name for p in providers if p.kind == "ros" and self.target.version(p.name))
+        return {name: self.has_released_header(name, path) for name in named}
+
     def nested_header(self, package: str, path: str) -> bool:
         """True when the release has the header in a subfolder that it exports too (xmlrpcpp/XmlRpc.h as XmlRpc.h)."""
-        version = self.target.version(package)
-        return (
-            "/" not in path
-            and bool(version)
-            and bool(self.providers.has_header(package, f"{package}/{path}", self.target.distro, version))
-        )
+        return "/" not in path and bool(self.has_released_header(package, f"{package}/{path}"))
 
-    def _renamed(self, name: str, path: str, version: str) -> str:
-        """The same header under another ending that the version has."""
-        stem = path.rpartition(".")[0]
-        for ending in (".hpp", ".h", ".hh"):
-            other = stem + ending
-            if other != path and self.providers.has_header(name, other, self.target.distro, version):
-                return other
-        return ""
+    def _renamed(self, name: str, path: str) -> str:
+        """The same header under another ending that the release has."""
+        others = (path.rpartition(".")[0] + ending for ending in (".hpp", ".h", ".hh"))
+        return next((other for other in others if other != path and self.has_released_header(name, other)), "")
 
     @cached_method
     def around(self, path: str) -> frozenset[str]:
@@ -541,10 +537,11 @@ class TargetView:
 
     def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
         """False when a statement under these conditions surely does not count on a horizon."""
-        conditions = tuple(conditions)
-        if not conditions:
-            return True
-        return all_hold(conditions, self._environment_on(ahead.target)) is not False
+        return self._active_on(ahead.target, tuple(conditions))
+
+    @cached_method
+    def _active_on(self, target: DistroTarget, conditions: tuple[Condition, ...]) -> bool:
+        return all_hold(conditions, self._environment_on(target)) is not False
 
     def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
         """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
@@ -552,21 +549,9 @@ class TargetView:
             return self.active_on(found.horizon, conditions)
         return found.is_missing
 
-    def later_active(self, conditions: Iterable[Condition]) -> bool:
+    def later_active(self, conditions: Collection[Condition]) -> bool:
         """The same on the newest distro."""
-        return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
-
-    @cached_method
-    def _environment_on(self, target: DistroTarget) -> Environment:
-        def version(name: str) -> str | None:
-            return target.version(name) or target.library(name.lower())
-
-        return Environment(
-            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else None,
-            codename=target.platform.split(" ")[-1], versions=version,
-            packages=lambda name: self._has_package(name, target), testing=True,
-            gone=lambda kind, name: self._is_gone(kind, name, target),
-        )  # fmt: skip
+        return not conditions or not self.newest or self._active_on(self.newest, tuple(conditions))
 
     @property
     def horizon(self) -> str:
@@ -599,27 +584,19 @@ class TargetView:
     @cached_method
     def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
-        return MappingProxyType(self._declares(package))
-
-    def _declares(self, package: Package) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}
-        for dependency in package.manifest.dependencies:
-            if dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-                continue
-            if dependency.condition and not self.active([Condition("manifest", dependency.condition)]):
-                continue
+        for dependency in self.dependencies(package):
             found.setdefault(dependency.name, set()).add(dependency.kind)
-        return found
+        return MappingProxyType(found)
 
-    def installed_with(self, name: str) -> Iterable[str]:
+    @cached_method
+    def installed_with(self, name: str) -> tuple[str, ...]:
         """Direct dependencies that come with a package or key when it is installed."""
         package = self.workspace.packages.get(name)
         if package is not None:
-            return [n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH]
-        released = self.target.dependencies(name) or self.target.similar_dependencies(name)
-        if released is None:
-            return ()
-        return [d.name for d in released if d.kind in _INSTALLED_WITH]
+            return tuple(n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH)
+        released = self.target.dependencies(name) or self.target.similar_dependencies(name) or ()
+        return tuple(d.name for d in released if d.kind in _INSTALLED_WITH)
 
     @cached_method
     def closure(self, package: Package) -> frozenset[str]:
@@ -651,7 +628,7 @@ class TargetView:
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
         """spread(), and all that packages whose manifests are not known for their version here bring in the next one
         that is, or in any distro."""
-        return frozenset(walk(names, self._possibly_with))
+        return frozenset().union(*(_whole(name, self._possibly_with, self._widest) for name in names))
 
     @cached_property
     def unknown_contents(self) -> UnknownContents:
@@ -666,25 +643,13 @@ class TargetView:
     @cached_method
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages:
-            return self._installed_with(name)
+            return self.installed_with(name)
         if self.target.dependencies(name) is None:
             return self.target.possible_dependencies(name)
-        return self.target.later_dependencies(name).union(self._installed_with(name))
+        return self.target.later_dependencies(name).union(self.installed_with(name))
 
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
-
-    def brought_by(self, package: Package) -> dict[str, str]:
-        """The names of closure(), each with the declared name that brings it on the shortest way, or an empty text."""
-        found = {n: n for n in self._built_with(package)}
-        queue = deque(found)
-        while queue:
-            name = queue.popleft()
-            for other in self._installed_with(name):
-                if other not in found:
-                    found[other] = found[name]
-                    queue.append(other)
-        return {**dict.fromkeys(self.preinstalled, ""), package.name: package.name, **found}
 
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
@@ -692,28 +657,7 @@ class TargetView:
 
     @cached_method
     def _spread(self, names: frozenset[str]) -> frozenset[str]:
-        return frozenset().union(*map(self._installed_whole, names))
-
-    def _installed_whole(self, name: str) -> frozenset[str]:
-        """A name and everything that is installed along with it."""
-        known = self._whole.get(name)
-        if known is None:
-            found, waiting = {name}, [name]
-            while waiting:
-                for other in self._installed_with(waiting.pop()):
-                    if other not in found:
-                        found.add(other)
-                        whole = self._whole.get(other)
-                        if whole is None:
-                            waiting.append(other)
-                        else:
-                            found |= whole
-            known = self._whole[name] = frozenset(found)
-        return known
-
-    @cached_method
-    def _installed_with(self, name: str) -> tuple[str, ...]:
-        return tuple(self.installed_with(name))
+        return frozenset().union(*(_whole(name, self.installed_with, self._whole) for name in names))
 
     @cached_method
     def debian(self, name: str) -> frozenset[str]:
@@ -764,11 +708,8 @@ class TargetView:
     @cached_method
     def header(self, path: str) -> tuple[Provider, ...]:
         """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
-        return tuple(self._header(path))
-
-    def _header(self, path: str) -> list[Provider]:
         if "/" not in path and self.is_standard(path):
-            return [Provider("system", "")]
+            return (Provider("system", ""),)
         own = self.workspace.provides_header(path)
         head = path.split("/", 1)[0]
         if (
@@ -779,10 +720,10 @@ class TargetView:
         ):
             own = []  # a file of the workspace ends like this by chance
         if own:
-            return [Provider("ros", name) for name in own]
+            return tuple(Provider("ros", name) for name in own)
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
-            return found
+            return tuple(found)
         found = self._having(path, self._bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
@@ -791,7 +732,7 @@ class TargetView:
             else:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
-        return _without_broad(found)
+        return tuple(_without_broad(found))
 
     def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the keys that bring the library of a header on other platforms than this one: whose packages were
@@ -816,12 +757,7 @@ class TargetView:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
         if len(found) < 2:
             return found
-        has = {
-            p.name: self.providers.has_header(p.name, path, self.target.distro, version)
-            for p in found
-            if p.kind == "ros" and p.name not in self.workspace.packages
-            and (version := self.target.version(p.name))
-        }  # fmt: skip
+        has = self._releases_having(path, (p for p in found if p.name not in self.workspace.packages))
         return [p for p in found if has.get(p.name) is not False] if True in has.values() else found
 
     def is_package(self, name: str) -> bool:
@@ -912,24 +848,18 @@ class TargetView:
             if not providers:
                 self.unresolved["cmake"].add(found.name)
                 continue
-            testing = for_tests(found.conditions)
+            role, how = _role_of(found.conditions), "find_package" if found.how == "find_package" else "component"
+            in_tests = role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
             certain = self.certain(found.conditions)
-            yield Need(
-                "find_package" if found.how == "find_package" else "component",
-                found.name,
-                providers,
-                found.at,
-                "test"
-                if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
-                else "build",
-                certain,
+            required = (
                 found.required
                 or (found.how == "catkin" and not found.quiet)
                 or (found.name == "PkgConfig" and self._requires_modules(package))
                 or self._is_called(package, found.name)
-                or (not found.required and self._is_linked(package, found.name)),
+                or self._is_linked(package, found.name)
             )
-            yield from self._parts_asked(found, testing, certain)
+            yield Need(how, found.name, providers, found.at, "test" if in_tests else role, certain, required)
+            yield from self._parts_asked(found, role, certain)
         if self.target.version("ros_environment") is not None:
             yield from self._environment_read(package)
         for include in digest.includes:
@@ -973,15 +903,8 @@ class TargetView:
             if not self.is_package(name) and not (".launch" in use.at.path and _PACKAGE.match(name)):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
-            yield Need(
-                how,
-                name,
-                (Provider("ros", name),),
-                use.at,
-                use.role,
-                not reference.conditional,
-                not reference.conditional,
-            )
+            certain = not reference.conditional
+            yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
 
     def _environment_read(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
@@ -997,8 +920,7 @@ class TargetView:
                     read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
         for name, at, conditions in read:
             if self.active(conditions):
-                role = "test" if for_tests(conditions) else "build"
-                yield Need("environment", name, providers, at, role, self.certain(conditions))
+                yield Need("environment", name, providers, at, _role_of(conditions), self.certain(conditions))
 
     def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
@@ -1054,18 +976,10 @@ class TargetView:
         # Also where its module has more words in its name than the package (orocos-bfl of bfl).
         words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.version(word) is not None)
         providers = (*providers, *(Provider("ros", word, "", False) for word in words))
-        testing = for_tests(found.conditions)
-        yield Need(
-            "pkg-config",
-            found.name,
-            providers,
-            found.at,
-            "test" if testing else "build",
-            self.certain(found.conditions),
-            found.required,
-        )
+        certain = self.certain(found.conditions)
+        yield Need("pkg-config", found.name, providers, found.at, _role_of(found.conditions), certain, found.required)
 
-    def _parts_asked(self, found: FoundPackage, testing: bool, certain: bool) -> Iterator[Need]:
+    def _parts_asked(self, found: FoundPackage, role: str, certain: bool) -> Iterator[Need]:
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
@@ -1074,7 +988,7 @@ class TargetView:
                 # The component's own package is what to declare, not one that has all of them.
                 providers = tuple(sorted(installed, key=lambda p: component.lower() not in p.name))
                 if providers:
-                    yield Need("part", name, providers, at, "test" if testing else "build", certain)
+                    yield Need("part", name, providers, at, role, certain)
 
     def _program_run(self, found: FoundPackage) -> Iterator[Need]:
         """A program that CMake starts; those that every machine has are left out. What a package builds where a library
@@ -1082,9 +996,32 @@ class TargetView:
         providers = tuple(self.providers.executable(found.name))
         if providers and providers[0].name and found.name not in self.apt.base:
             certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
-            role = "test" if for_tests(found.conditions) else "build"
             required = self.certain(found.conditions)
-            yield Need("program", found.name, providers, found.at, role, certain, required)
+            yield Need("program", found.name, providers, found.at, _role_of(found.conditions), certain, required)
+
+
+def _role_of(conditions: Iterable[Condition]) -> str:
+    """What is built under conditions: tests or the rest."""
+    return "test" if for_tests(conditions) else "build"
+
+
+def _whole(
+    name: str, leads: Callable[[str], Iterable[str]], known: dict[str, frozenset[str]]
+) -> frozenset[str]:
+    """A name and everything that it leads to. known: of other names, and of this one from now on."""
+    if name not in known:
+        found, waiting = {name}, [name]
+        while waiting:
+            for other in leads(waiting.pop()):
+                if other in found:
+                    continue
+                found.add(other)
+                if other in known:
+                    found |= known[other]
+                else:
+                    waiting.append(other)
+        known[name] = frozenset(found)
+    return known[name]
 
 
 def _without_broad(found: list[Provider]) -> list[Provider]:

@@ -27,8 +27,8 @@ Its scope says what it is called with, and how often:
                                                   when there is an install space
     targets        views                          once, with all targets together; it yields (view, diagnostic)
 
-A rule of the scope `package` may yield Upcoming as well, which is rated package by package. All that a rule is written
-with, beside the model and the target, is imported from here.
+A rule of the scope `package` may yield Upcoming as well, which is rated package by package. What rules are written with
+is imported from vocabulary.py.
 
 It yields diagnostics: data, not text. What differs between targets (a version, a date) is data of one diagnostic for
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
@@ -45,7 +45,7 @@ from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
 from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import Doubt, Together, doubts_of_place, severity
+from .severity import SEVERITIES, Doubt, Together, doubts_of_place, severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 
@@ -55,7 +55,6 @@ __all__ = [
     "groups", "rate_upcoming", "rule", "severity",
 ]  # fmt: skip
 
-SEVERITIES = ("note", "warning", "error")
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
 
@@ -66,8 +65,7 @@ class Diagnostic(NamedTuple):
     the package of the place. data: the values that the rule's texts name, beside subject and package; every rule calls
     a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
     of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity, as
-    severity() takes it.
-    severity: where the policy was asked already; else empty. together: with which others it is worth one warning.
+    severity() takes it. together: with which others it is worth one warning.
     fix: actions that repair it, see fix_actions.py; kept only when every target asked for yields the same. evidence:
     the change that it rests on, without targets; check.py adds how each target stands to it.
     """
@@ -78,7 +76,6 @@ class Diagnostic(NamedTuple):
     data: Mapping[str, Value] = {}
     kind: str = ""
     doubts: tuple[Doubt | bool | None, ...] = ()
-    severity: str = ""
     fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
     together: tuple[Together, ...] = ()
@@ -119,7 +116,7 @@ class Rule(NamedTuple):
 
     family: its folder. severity: the usual one. scope: see the module. preview: its precision is not measured yet.
     doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of once, empty
-    otherwise. texts: templates by kind of diagnostic; empty while the rule writes its texts itself.
+    otherwise. texts: templates by kind of diagnostic.
     """
 
     name: str
@@ -155,9 +152,7 @@ class Rule(NamedTuple):
         return self.scope in ("flow", "flow_change")
 
     def severity_of(self, diagnostic: Diagnostic) -> str:
-        """How severe a diagnostic is: as it says itself, else the usual severity, lowered by its doubts."""
-        if diagnostic.severity or not diagnostic.doubts:
-            return diagnostic.severity or self.severity
+        """How severe a diagnostic is: the usual severity, lowered by its doubts."""
         return min(self.severity, severity(*diagnostic.doubts), key=SEVERITIES.index)
 
     def verify(self, diagnostic: Diagnostic) -> None:
@@ -184,7 +179,7 @@ def rule(
     scope: Scope = "package",
     severity: Literal["note", "warning", "error"] = "error",
     doubts: tuple[Doubt, ...] = (),
-    texts: Text | Mapping[str, Text] | None = None,
+    texts: Text | Mapping[str, Text],
     group: str = "",
     preview: bool = False,
 ):
@@ -196,10 +191,6 @@ def rule(
     rule that this check was a part of, so that settings, comments, baselines and fingerprints which name that one go on
     to hold for this one. preview: it runs only when asked for, since its precision is not measured yet.
     """
-    if texts is None:
-        texts = {}
-    elif isinstance(texts, Text):
-        texts = {"": texts}
 
     def register(function):
         parts = function.__module__.split(".")
@@ -208,7 +199,8 @@ def rule(
         usual = _lowest(severity, doubts)
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
-        _RULES[name] = Rule(name, parts[-2], usual, run, documentation, called, preview, doubts, group, texts)
+        by_kind = {"": texts} if isinstance(texts, Text) else texts
+        _RULES[name] = Rule(name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind)
         return function
 
     return register

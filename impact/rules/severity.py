@@ -58,19 +58,16 @@ class Doubt(enum.Enum):
         return self
 
 
-_LADDER = ("note", "warning", "error")
+SEVERITIES = ("note", "warning", "error")
 
 
 def severity(*doubts: Doubt | bool | None) -> str:
     """`error` where there is no doubt, else the highest severity that all doubts allow. True and None count for
     nothing, so that `known or Doubt.INCOMPLETE` can be written. Raises TypeError for False, which is a slip."""
-    lowest = len(_LADDER) - 1
-    for doubt in doubts:
-        if isinstance(doubt, Doubt):
-            lowest = min(lowest, _LADDER.index(doubt.allows))
-        elif doubt is False:
-            raise TypeError("False is no doubt; write `known or Doubt...`")
-    return _LADDER[lowest]
+    if any(doubt is False for doubt in doubts):
+        raise TypeError("False is no doubt; write `known or Doubt...`")
+    allowed = (doubt.allows for doubt in doubts if isinstance(doubt, Doubt))
+    return min(allowed, key=SEVERITIES.index, default=SEVERITIES[-1])
 
 
 # Languages whose conditions a file states about itself.

@@ -5,6 +5,7 @@ from rosimpact.impact.analysis.findings import merge_diagnostics
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, SourceLines
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Edit, Rule
+from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.text import Text
 
 FILES = {
@@ -44,9 +45,9 @@ RULES = {
 }
 
 
-def said(at, subject, message, help="", package="", severity="", fix=(), version="") -> Diagnostic:
+def said(at, subject, message, help="", package="", doubts=(), fix=(), version="") -> Diagnostic:
     data = {"message": message, "help": help, "version": version}
-    return Diagnostic(at, subject, package, data, severity=severity, fix=fix)
+    return Diagnostic(at, subject, package, data, doubts=doubts, fix=fix)
 
 
 def team_hits():
@@ -76,7 +77,7 @@ def team_hits():
                 "`cv_bridge` is included and not declared",
                 "add `<depend>cv_bridge</depend>` to `src/localizer/package.xml`",
                 "localizer",
-                "warning",
+                (Doubt.LATE,),
                 declare,
             ),
         )

@@ -72,9 +72,9 @@ RULE = Rule(
 )
 
 
-def of(target: str, kind="removed", severity="error", **data):
+def of(target: str, kind="removed", doubts=(), **data):
     """A diagnostic of RULE on a target."""
-    return "lost-name", target, Diagnostic(At("a.cpp", 1), "f", "p", data, kind, severity=severity)
+    return "lost-name", target, Diagnostic(At("a.cpp", 1), "f", "p", data, kind, doubts)
 
 
 # (diagnostics, message and help of each finding)
@@ -89,7 +89,7 @@ MERGED = [
     # twice the same fact is one
     ([of("a", version="1"), of("a", version="1")], [("`f` was removed in 1", "")]),
     # another severity is another finding
-    ([of("a", version="1"), of("b", severity="note", version="1")],
+    ([of("a", version="1"), of("b", doubts=(Doubt.EXAMPLE,), version="1")],
      [("`f` was removed in 1", ""), ("`f` was removed in 1", "")]),
 ]  # fmt: skip
 
@@ -101,20 +101,19 @@ def test_diagnostics_are_merged_by_their_data(diagnostics, expected):
 
 
 @pytest.mark.parametrize(
-    ("usual", "doubts", "severity", "expected"),
+    ("usual", "doubts", "expected"),
     [
-        ("error", (), "", "error"),
-        ("error", (Doubt.CONDITIONAL,), "", "warning"),
-        ("error", (Doubt.CONDITIONAL, Doubt.EXAMPLE), "", "note"),
+        ("error", (), "error"),
+        ("error", (Doubt.CONDITIONAL,), "warning"),
+        ("error", (Doubt.CONDITIONAL, Doubt.EXAMPLE), "note"),
         # doubts never raise what a rule is worth at most
-        ("note", (Doubt.CONDITIONAL,), "", "note"),
-        # the policy was asked already
-        ("error", (), "note", "note"),
+        ("note", (Doubt.CONDITIONAL,), "note"),
+        ("note", (), "note"),
     ],
 )
-def test_doubts_lower_the_usual_severity(usual, doubts, severity, expected):
+def test_doubts_lower_the_usual_severity(usual, doubts, expected):
     rule = RULE._replace(severity=usual)
-    assert rule.severity_of(Diagnostic(None, "f", doubts=doubts, severity=severity)) == expected
+    assert rule.severity_of(Diagnostic(None, "f", doubts=doubts)) == expected
 
 
 @pytest.mark.parametrize(

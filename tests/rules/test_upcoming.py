@@ -49,6 +49,6 @@ def test_the_next_sync_counts_as_now_and_a_far_distro_as_a_note():
     assert severities(one(1, horizon=UPDATE), one(2, horizon=UPDATE)) == ["warning", "note"]
 
 
-def test_findings_with_a_severity_keep_it():
-    plain = Diagnostic(At("a.cpp", 1), "x", severity="error")
+def test_what_is_gone_already_keeps_its_severity():
+    plain = Diagnostic(At("a.cpp", 1), "x")
     assert severities(plain, one(2)) == ["error", "warning"]

@@ -23,13 +23,10 @@ Not reported
 from collections.abc import Iterator, Sequence
 
 from ...model.package import NameUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import ChangeRow, all_uses, behaves_differently
-from ...targets.distro.distro import DistroTarget
-from ...targets.distro.known import known_distros
 from ...targets.evidence_record import Evidence
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
+from .changed_default import long_term_before
 from .diagnosis import is_of_another_distro
 
 
@@ -44,7 +41,7 @@ def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView,
     table = all_uses("behaviour")
     workspace = views[0].workspace
     own = {function for package in workspace for function in package.digest.functions}
-    before = _before(views[0]) if len(views) == 1 else None
+    before = long_term_before(views[0].target.distro) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
         seen: set[tuple[str, str]] = set()
@@ -78,20 +75,8 @@ def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView,
 
 def _counts(view: TargetView, package: Package, use: NameUse, row: ChangeRow) -> bool:
     """Whether a use is compiled or run on a target that has the package in some version."""
-    if package.build_type.startswith("ament") and view.target.ros == 1:
-        return False
-    if package.build_type == "catkin" and view.target.ros == 2:
-        return False
-    if behaves_differently(row, view.target) is None or not view.active(use.conditions):
+    if not view.builds(package) or behaves_differently(row, view.target) is None or not view.active(use.conditions):
         return False
     if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
         return False
     return view.concerned(package, row, use.at.path)
-
-
-def _before(view: TargetView) -> DistroTarget | None:
-    """The long-term distro before the target's."""
-    known = known_distros()
-    here = next((one.released for one in known if one.name == view.target.distro), "")
-    earlier = [one.name for one in known if one.lts and one.ros == view.target.ros and one.released < here]
-    return DistroTarget(earlier[-1]) if earlier else None

@@ -20,14 +20,12 @@ Not reported
 
 from functools import cache
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.surface.offers_cpp import defaults_changed
 from ...targets.symbol import Availability
 from ...targets.version import at_least
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .uses import list_cpp_uses
 
 
@@ -52,16 +50,16 @@ def changed_default(view: TargetView, package: Package):
 
 def _came_lately(target: DistroTarget, found: Availability) -> bool:
     """Whether a change came after the long-term distro before the target's."""
-    earlier = _long_term_before(target.distro)
-    version = DistroTarget(earlier).version(found.package) if earlier else None
+    earlier = long_term_before(target.distro)
+    version = earlier.version(found.package) if earlier is not None else None
     return version is None or not at_least(version, found.since)
 
 
 @cache
-def _long_term_before(distro: str) -> str:
-    known = {one.name: one for one in known_distros()}
-    here = known.get(distro)
+def long_term_before(distro: str) -> DistroTarget | None:
+    """The long-term distro of the same generation before one."""
+    here = next((one for one in known_distros() if one.name == distro), None)
     if here is None:
-        return ""
-    earlier = [one for one in known.values() if one.lts and one.ros == here.ros and one.released < here.released]
-    return max(earlier, key=lambda one: one.released).name if earlier else ""
+        return None
+    earlier = [one for one in known_distros() if one.lts and one.ros == here.ros and one.released < here.released]
+    return DistroTarget(max(earlier, key=lambda one: one.released).name) if earlier else None

@@ -23,9 +23,7 @@ Not reported
     `try` that expects it or a test of the version; what the workspace itself provides.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Text, rule
+from ..vocabulary import Package, TargetView, Text, rule
 from .diagnosis import UPSTREAM, data_of, diagnose
 from .uses import list_python_uses
 

@@ -34,13 +34,11 @@ from collections.abc import Iterator
 
 from ....edges.console import counted
 from ...model.standards import find_failing_standard
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.changes import function_of, shows_no_type, standards_of
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import ChangeInForce
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import UPSTREAM, data_of, diagnose
 from .uses import UnservedUse, list_cpp_uses
 

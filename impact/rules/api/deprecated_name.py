@@ -18,10 +18,9 @@ Not reported
     Code that a version test excludes on the target.
 """
 
-from ...model.view import TargetView
 from ...targets.availability import of_row
 from ...targets.symbol import Symbol
-from ..rule import Doubt, rule
+from ..vocabulary import Doubt, TargetView, rule
 from .diagnosis import availability_texts, diagnose
 from .uses import list_cpp_uses, list_python_uses
 

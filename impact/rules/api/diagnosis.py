@@ -3,11 +3,20 @@
 from collections.abc import Collection, Iterable, Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, Doubt, FixAction, Text, Together, Upcoming, Value, doubts_of_place
+from ..vocabulary import (
+    Diagnostic,
+    Doubt,
+    FixAction,
+    Package,
+    TargetView,
+    Text,
+    Together,
+    Upcoming,
+    Value,
+    doubts_of_place,
+)
 
 UPSTREAM = "{upstream}[[ {version}]]"
 """The package or library that decides, in the version that the target has."""
@@ -106,7 +115,7 @@ def find_gone_package(
         return
     found = find_missing(view, "package", upstream, ())
     if found is not None and found.state in ("removed", "not yet"):
-        last = view.last_distro(upstream)
+        last = view.target.last_distro(upstream)
         data = {
             "upstream": upstream, "distro": view.target.distro, "replacement": view.successor(upstream),
             "last": last if found.state == "removed" and last != view.target.distro else "",

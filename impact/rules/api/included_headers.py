@@ -8,13 +8,11 @@ from typing import NamedTuple
 from ....edges.memory import kept_with
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Availability, Symbol
 from ...targets.target import ChangeInForce
-from ..rule import Doubt, FixAction, doubts_of_place
+from ..vocabulary import Doubt, FixAction, Package, TargetView, doubts_of_place
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
 

@@ -5,11 +5,10 @@ from typing import NamedTuple
 
 from ...model.misspelling import SpellingIndex
 from ...model.package import IncludeUse, is_header
-from ...model.view import TargetView
-from ...model.workspace import Package, snake
+from ...model.workspace import snake
 from ...targets.surface.fields import default_fields
 from ...targets.symbol import Availability
-from ..rule import Doubt, Text, Value
+from ..vocabulary import Doubt, Package, TargetView, Text, Value
 from .diagnosis import find_missing
 
 TEXTS = {

@@ -21,12 +21,10 @@ Not reported
 """
 
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.availability import of_row
 from ...targets.evidence import of_offered
 from ...targets.symbol import Availability, Symbol
-from ..rule import Diagnostic, Doubt, Replace, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, rule
 from .diagnosis import availability_texts, data_of
 
 

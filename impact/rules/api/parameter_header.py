@@ -24,23 +24,13 @@ Not reported
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "include `{replacement}`"
-
-
-class _Fault(NamedTuple):
-    """What is wrong with an include. kind: of the rule's texts. replacement: what to include instead."""
-
-    kind: str
-    replacement: str
 
 
 class ParameterHeaders:
@@ -59,19 +49,19 @@ class ParameterHeaders:
             if item.how == "parameters" and self.version
         }
 
-    def find_fault(self, include: IncludeUse) -> _Fault | None:
-        """What is wrong with the include of such a header."""
+    def find_fault(self, include: IncludeUse) -> tuple[str, str] | None:
+        """What is wrong with the include of such a header, as the kind of a text, and what to include instead."""
         head, _, file = include.path.rpartition("/")
         owner = self.owner.get(file.removesuffix(".hpp")) if file.endswith(".hpp") else None
         if owner is None or head not in ("", owner) or include.role == "aside":
             return None
         installed, only_new = at_least(self.version, "0.4.0"), at_least(self.version, "1.0.0")
         if head and not installed:
-            return _Fault("early", file)
+            return "early", file
         if not head and only_new:
-            return _Fault("gone", f"{owner}/{file}")
+            return "gone", f"{owner}/{file}"
         if not head and include.public and installed:
-            return _Fault("installed", f"{owner}/{file}")
+            return "installed", f"{owner}/{file}"
         return None
 
 
@@ -98,9 +88,10 @@ def parameter_header(view: TargetView):
         for include in package.digest.includes:
             fault = headers.find_fault(include)
             if fault is not None and view.active(include.conditions):
-                data = {"version": headers.version, "replacement": fault.replacement}
-                doubts = (Doubt.DISTURBS,) if fault.kind == "installed" else ()
-                yield Diagnostic(include.at, include.path, package.name, data, fault.kind, doubts)
+                kind, replacement = fault
+                data = {"version": headers.version, "replacement": replacement}
+                doubts = (Doubt.DISTURBS,) if kind == "installed" else ()
+                yield Diagnostic(include.at, include.path, package.name, data, kind, doubts)
         yield from _list_unlinked(view, package, headers)
 
 

@@ -26,12 +26,9 @@ Not reported
 from collections.abc import Iterator
 
 from ...facts.condition import Condition
-from ...model.cmake.build import At
 from ...model.cmake.names import MODULES
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.symbol import Symbol
-from ..rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import availability_texts, diagnose, find_missing
 
 Names = list[tuple[str, At, tuple[Condition, ...], str]]

@@ -29,9 +29,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rule
 from .diagnosis import (
     GONE_PACKAGE,
     UPSTREAM,
@@ -71,11 +69,9 @@ def removed_executable(view: TargetView, package: Package):
 def _lost(view: TargetView, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
     found = find_missing(view, side, name, (use.reference.package,))
     if found is not None:
-        doubts = [*doubts_of_place(view, use.role), view.target.ros == 2 or Doubt.LATE]
-        if use.reference.conditional or use.role == "test":
-            doubts.append(Doubt.LATE)
-        if view.target.ros == 2 and name.endswith((".launch", ".launch.xml")):
-            doubts.append(Doubt.UNCOMPILED)
+        sure = view.target.ros == 2 and not use.reference.conditional and use.role != "test"
+        compiled = view.target.ros == 1 or not name.endswith((".launch", ".launch.xml"))
+        doubts = (*doubts_of_place(view, use.role), sure or Doubt.LATE, compiled or Doubt.UNCOMPILED)
         yield diagnose(found, use.at, name, package, doubts)
 
 

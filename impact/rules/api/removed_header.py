@@ -29,9 +29,7 @@ Not reported
 """
 
 from ...model.package import is_header
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Text, rule
+from ..vocabulary import Package, TargetView, Text, rule
 from .diagnosis import availability_texts, diagnose
 from .included_headers import find_misspelt, included_headers, is_bridge
 from .interface_headers import find_interface_fault

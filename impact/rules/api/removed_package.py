@@ -23,9 +23,10 @@ Not reported
     does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
+from collections.abc import Iterator
+
 from ...model.cmake.build import FoundPackage
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
 TEXTS = {
@@ -36,33 +37,32 @@ TEXTS = {
 }
 
 
-@rule(scope="target", texts=TEXTS)
-def removed_package(view: TargetView):
-    yield from list_gone_packages(view, "package-removed")
+@rule(texts=TEXTS)
+def removed_package(view: TargetView, package: Package):
+    return list_gone_packages(view, package, "package-removed")
 
 
-def list_gone_packages(view: TargetView, kind: str):
+def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
     """Diagnostics for every use of a package whose change of the given kind is in force."""
     gone = {c.old or c.package: c.new for c in view.changes(kind) if c.state == "removed"}
-    for package in view:
-        uses = [
-            (d.name, "declared", view.manifest_place(package, d),
-             (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
-            for d in package.manifest.dependencies
-            if d.kind not in ("conflict", "replace") and (not d.condition or view.active_manifest(d.condition))
-        ]  # fmt: skip
-        uses += [
-            (f.name, "found", f.at, _doubts_of_search(view, f))
-            for f in package.build.found
-            if view.active(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
-        ]
-        seen = set()
-        for name, how, at, doubts in uses:
-            if name not in gone or name in seen or view.available(name):
-                continue
-            seen.add(name)
-            data = {"distro": view.target.distro, "replacement": gone[name]}
-            yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
+    uses = [
+        (d.name, "declared", view.manifest_place(package, d),
+         (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
+        for d in package.manifest.dependencies
+        if d.kind not in ("conflict", "replace") and view.active_manifest(d.condition)
+    ]  # fmt: skip
+    uses += [
+        (f.name, "found", f.at, _doubts_of_search(view, f))
+        for f in package.build.found
+        if view.active(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
+    ]
+    seen = set()
+    for name, how, at, doubts in uses:
+        if name not in gone or name in seen or view.available(name):
+            continue
+        seen.add(name)
+        data = {"distro": view.target.distro, "replacement": gone[name]}
+        yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
 
 
 def _doubts_of_search(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:

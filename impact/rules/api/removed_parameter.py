@@ -25,10 +25,8 @@ Not reported
 """
 
 from ...model.undeclared_parameters import list_undeclared_parameters
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.evidence import of_offered
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .diagnosis import is_of_another_distro, lacking_of
 
 _HELP = "[[set `{replacement}`]]"

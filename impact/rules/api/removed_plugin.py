@@ -26,13 +26,11 @@ Not reported
 
 import difflib
 import re
-from collections.abc import Iterator
 
+from ....edges.memory import kept_with
 from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 from .diagnosis import (
     GONE_PACKAGE,
     availability_texts,
@@ -44,30 +42,15 @@ from .diagnosis import (
 
 
 @rule(
-    scope="target",
     texts={
         **availability_texts(),
         "package": GONE_PACKAGE,
         "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
-def removed_plugin(view: TargetView):
-    declared = {package.name: _list_declared(package) for package in view.workspace}
-    own = {name for names in declared.values() for name in names}
-    for package in view:
-        yield from rate_upcoming(_of_package(view, package, own, declared))
-
-
-def _list_declared(package: Package) -> set[str]:
-    """Names of the plugins and components of a package of the workspace."""
-    names = {name for _, plugin in package.digest.plugins for name in (plugin.name, plugin.type) if name}
-    components = (export.item for export in package.build.exports if export.how == "component")
-    return names.union(components, package.digest.registered)
-
-
-def _of_package(
-    view: TargetView, package: Package, own: set[str], declared: dict[str, set[str]]
-) -> Iterator[Diagnostic | Upcoming]:
+def removed_plugin(view: TargetView, package: Package):
+    declared = _list_declared(view)
+    own = set().union(*declared.values())
     files = frozenset(package.digest.files)
     for use in package.digest.references:
         name = use.reference.name
@@ -95,6 +78,17 @@ def _of_package(
         doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
         yield diagnose(found, use.at, name, package.name, doubts)
+
+
+@kept_with
+def _list_declared(view: TargetView) -> dict[str, set[str]]:
+    """Names of the plugins and components of each package of the workspace."""
+    found: dict[str, set[str]] = {}
+    for package in view.workspace:
+        names = {name for _, plugin in package.digest.plugins for name in (plugin.name, plugin.type) if name}
+        components = (export.item for export in package.build.exports if export.how == "component")
+        found[package.name] = names.union(components, package.digest.registered)
+    return found
 
 
 def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:

@@ -26,9 +26,7 @@ Not reported
     written.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import SEVERITIES, Doubt, rule, severity
+from ..vocabulary import SEVERITIES, Doubt, Package, TargetView, rule, severity
 from .diagnosis import availability_texts, diagnose
 from .uses import UnservedUse, list_python_uses
 

@@ -30,19 +30,19 @@ Not reported
 """
 
 from collections.abc import Iterator
+from functools import cached_property
+from typing import Literal
 
 from ...facts.condition import Condition
-from ...model.package import NameUse
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ...model.package import NameUse, is_header
 from ...targets.availability import of_row
 from ...targets.changes import excuses, removed_in
+from ...targets.providers.library import include_roots
 from ...targets.providers.stdlib import stood_in_for
 from ...targets.symbol import Symbol
 from ...targets.target import ChangeInForce
 from ...targets.version import parts
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
-from .brought_back import Headers
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import UPSTREAM, availability_texts, diagnose
 from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted
 from .uses import list_cpp_uses
@@ -76,7 +76,7 @@ def removed_symbol(view: TargetView):
 
 def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell."""
-    headers = Headers(view, package)
+    headers = _Headers(view, package)
     for use in package.digest.names:
         if "::" in use.text and use.text in rows.own:
             continue  # the workspace defines it
@@ -134,3 +134,50 @@ def _is_run(package: Package, use: NameUse) -> bool:
     if use.role != "test":
         return use.role in ("build", "run")
     return any(use.at.path in target.sources for target in package.build.targets if target.kind == "test")
+
+
+_CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
+
+
+class _Headers:
+    """What the files of a package include: some headers bring back a name which a library took out of its usual ones
+    (`_c.h` for OpenCV's C constants)."""
+
+    def __init__(self, view: TargetView, package: Package):
+        self._view, self._package = view, package
+
+    @cached_property
+    def _included(self) -> dict[str, set[str]]:
+        """What each file includes of others, with what the package's own headers do, since any of them may come
+        before."""
+        includes = self._package.digest.includes
+        found: dict[str, set[str]] = {}
+        found[""] = shared = {i.path for i in includes if is_header(i.at.path)}
+        for include in includes:
+            found.setdefault(include.at.path, set(shared)).add(include.path)
+        return found
+
+    def bring_back(self, file: str, change: ChangeInForce) -> Literal["yes", "maybe", "no"]:
+        """Whether a file has a name in spite of a change, by what it includes."""
+        paths = self._included.get(file, self._included[""])
+        endings = excuses(change)
+        if any(self._brings(change, endings, path) for path in paths):
+            return "yes"
+        return "maybe" if any(self._may_bring(change, path) for path in paths) else "no"
+
+    def _brings(self, change: ChangeInForce, endings: tuple[str, ...], path: str) -> bool:
+        """True for headers that bring the name back, and for those of other packages that include one of the library's
+        that does, at whatever distance."""
+        roots = include_roots(change.package)
+        if path.endswith(endings) or not roots or path.startswith(roots):
+            return path.endswith(endings)
+        return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.brought(path).headers)
+
+    def _may_bring(self, change: ChangeInForce, path: str) -> bool:
+        """True for headers of packages that depend on the changed library, and of nobody known."""
+        view = self._view
+        if path.startswith(include_roots(change.package) or "\0") or view.is_standard(path):
+            return False
+        providers = view.header(path)
+        keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
+        return not providers or any(p.kind == "ros" and not keys.isdisjoint(view.spread((p.name,))) for p in providers)

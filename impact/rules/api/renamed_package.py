@@ -23,11 +23,10 @@ Not reported
     does not hold on the target; what find_package(... QUIET) looks for where a test of its X_FOUND follows.
 """
 
-from ...model.view import TargetView
-from ..rule import rule
+from ..vocabulary import Package, TargetView, rule
 from .removed_package import TEXTS, list_gone_packages
 
 
-@rule(scope="target", texts=TEXTS)
-def renamed_package(view: TargetView):
-    yield from list_gone_packages(view, "package-renamed")
+@rule(texts=TEXTS)
+def renamed_package(view: TargetView, package: Package):
+    return list_gone_packages(view, package, "package-renamed")

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 from ...model.package import NameUse, is_header
-from ...model.view import TargetView
 from ...targets.symbol import Symbol
 from ...targets.target import ChangeInForce
+from ..vocabulary import TargetView
 
 _CPP_KINDS = ("api-removed", "api-renamed", "api-changed")
 _PYTHON_KINDS = ("python-removed", "python-api")

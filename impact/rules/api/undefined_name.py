@@ -33,11 +33,9 @@ from collections.abc import Iterator
 from ...facts.python.bound import PYTHON2_BUILTINS
 from ...model.package import ImportUse
 from ...model.python.undefined import BESIDE, UNLISTED
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
-from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, doubts_of_place, rule
 
 
 @rule(

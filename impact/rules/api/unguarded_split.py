@@ -25,9 +25,8 @@ Not reported
 
 from collections.abc import Iterable, Iterator
 
-from ...model.cmake.build import At
 from ...targets.evidence_record import Evidence
-from ..rule import Diagnostic, Finding, Text, rule
+from ..vocabulary import At, Diagnostic, Finding, Text, rule
 
 _MESSAGE = "no single spelling works on {where} for {names}, which changed in `{subject}`"
 

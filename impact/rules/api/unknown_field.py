@@ -31,10 +31,8 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import MemberUse
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.symbol import Symbol
-from ..rule import Diagnostic, Doubt, Text, Upcoming, doubts_of_place, rate_upcoming, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
 from .diagnosis import UPSTREAM, availability_texts, data_of, diagnose, find_missing
 
 _MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"

@@ -28,9 +28,7 @@ Not reported
 """
 
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .included_headers import find_misspelt, included_headers, is_bridge, is_nowhere
 from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
 

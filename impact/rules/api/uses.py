@@ -5,18 +5,15 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...facts.condition import Condition
-from ...model.cmake.build import At
 from ...model.package import CppApiUse, PythonApiUse
 from ...model.python.api import packages_of
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.changes import function_of
 from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
 from ...targets.surface.overrides import class_of, says_override
 from ...targets.symbol import Availability
-from ..rule import Doubt, doubts_of_place
+from ..vocabulary import At, Doubt, Package, TargetView, doubts_of_place
 
 
 class UnservedUse(NamedTuple):
@@ -30,19 +27,6 @@ class UnservedUse(NamedTuple):
     arguments: int = -1
     keywords: tuple[str, ...] = ()
     sure: bool = True
-
-
-@kept_with
-def list_cpp_uses(view: TargetView, package: Package) -> list[UnservedUse]:
-    """Those of C++, in the order of the digest. What the target does not compile, and what reviewed tables speak of is
-    left out. What an update of the distro breaks is upcoming."""
-    return list(_list_cpp(view, package))
-
-
-@kept_with
-def list_python_uses(view: TargetView, package: Package) -> list[UnservedUse]:
-    """The same of Python; what the workspace provides is left out."""
-    return list(_list_python(view, package))
 
 
 Ask = Callable[[Offers, PythonOffers], Availability | None]
@@ -72,7 +56,10 @@ def _answers(
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
 
-def _list_cpp(view: TargetView, package: Package) -> Iterator[UnservedUse]:
+@kept_with
+def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
+    """Uses of C++ names, in the order of the digest. What the target does not compile, and what reviewed tables speak
+    of is left out. What an update of the distro breaks is upcoming."""
     if not package.digest.cpp_api:
         return
     reviewed = {change.old for change in view.changes(*_REVIEWED)}
@@ -121,7 +108,9 @@ def _doubts_of_cpp(view: TargetView, use: CppApiUse, found: Availability) -> tup
     return doubts
 
 
-def _list_python(view: TargetView, package: Package) -> Iterator[UnservedUse]:
+@kept_with
+def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
+    """The same of Python; what the workspace provides is left out."""
     if not package.digest.python_api:
         return
     reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}

@@ -20,10 +20,8 @@ Not reported
     Headers of the workspace itself; includes under a condition that excludes the target.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import versioned_folder
-from ..rule import Diagnostic, Doubt, Text, Together, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, doubts_of_place, rule
 
 _INCLUDE = "[[include `{replacement}`]]"
 

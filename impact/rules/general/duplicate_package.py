@@ -17,9 +17,7 @@ Use instead
     src/gripper_copy/package.xml        <name>gripper_copy</name>
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(

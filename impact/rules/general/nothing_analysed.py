@@ -10,9 +10,7 @@ Severity
     error, and the exit status is 2 whatever --fail-on says.
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(

@@ -27,9 +27,7 @@ Not reported
 
 import re
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 
 _BLOCKS = ("if", "foreach", "while", "function", "macro", "block")
 _UNCLOSED = re.compile(r"(\w+)\(\) is never closed")

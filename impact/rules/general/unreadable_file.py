@@ -10,9 +10,7 @@ Severity
     note: other tools report what else is wrong with the file; the coverage line counts it too.
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(scope="workspace", severity="note", texts=Text("{problem}"))

@@ -15,9 +15,7 @@ Use instead
 
 from collections.abc import Iterable, Iterator
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(

@@ -3,8 +3,7 @@
 import posixpath
 import re
 
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 # What compilers and linkers write.
 _BUILT = re.compile(r"\.(?:o|obj|a|dylib|so(?:\.[\d.]+)?)\Z")

@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 from ...model.cmake.build import CMakeExport
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 _HOWS = frozenset(
     {"ament_export_targets", "ament_export_libraries", "ament_export_include_directories", "ament_export_dependencies"}

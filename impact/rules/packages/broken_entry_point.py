@@ -20,10 +20,7 @@ Not reported
 import posixpath
 
 from ...facts.setup import SetupFile
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(

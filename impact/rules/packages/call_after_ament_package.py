@@ -21,9 +21,7 @@ Not reported
     Calls in other files than ament_package().
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, doubts_of_place, rule
 
 
 @rule(

@@ -21,9 +21,7 @@ Not reported
     Names under a condition that is not known; packages whose build type is not known.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _BUILD = frozenset({"build"})
 _RUN = frozenset({"exec", "build_export"})

@@ -7,8 +7,10 @@ by the build of those in the workspace, and by the stored surfaces of those that
 import re
 from collections.abc import Iterable
 
+from ....edges.memory import cached_method
+from ....edges.reach import walk
 from ...model.cmake.links import linked_items
-from ...model.view import TargetView
+from ..vocabulary import TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
@@ -52,19 +54,10 @@ class CatkinExports:
 
     def closure(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""
-        found: set[str] = set()
-        waiting = list(names)
-        while waiting:
-            name = waiting.pop()
-            if name in found:
-                continue
-            found.add(name)
-            further = self._dependencies(name)
-            if further is None:
-                return None
-            waiting.extend(further)
-        return frozenset(found)
+        found = frozenset(walk(names, lambda name: self._dependencies(name) or ()))
+        return None if any(self._dependencies(name) is None for name in found) else found
 
+    @cached_method
     def _dependencies(self, name: str) -> Iterable[str] | None:
         package = self._view.workspace.packages.get(name)
         if package is not None:

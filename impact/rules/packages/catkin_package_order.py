@@ -28,9 +28,7 @@ Not reported
 import re
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(

@@ -7,10 +7,7 @@ of the workspace bring.
 
 import re
 
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
-from ..evidence import circular
-from ..rule import Doubt
+from ..vocabulary import Doubt, Need, Package, TargetView
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -22,6 +19,16 @@ _LIBRARY = re.compile(r"lib|.*-dev\Z")
 # What a package that generates messages hands on to whoever uses them.
 _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
+
+
+def circular(view: TargetView, package: Package, name: str) -> bool:
+    """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
+    other = view.workspace.packages.get(name)
+    if other is None:
+        return package.name in view.spread([name])
+    return package.name in view.closure(other) or any(
+        provider.name == package.name for need in view.needs(other) for provider in need.providers[:1]
+    )
 
 
 def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:

@@ -21,10 +21,8 @@ Not reported
     workspace.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import not_answering
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, rule
 
 
 @rule(

@@ -4,8 +4,8 @@ import posixpath
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from ...model.cmake.build import At, Install
-from ...model.workspace import Package
+from ...model.cmake.build import Install
+from ..vocabulary import At, Package
 
 
 class DataFiles(NamedTuple):

@@ -1,9 +1,9 @@
 """Packages of the workspace that are sure to stop at what another one of it offers them."""
 
+from ....edges.memory import kept_with
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 
 def compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
@@ -50,6 +50,14 @@ def _links(view: TargetView, package: Package, other: str, target: str) -> bool:
 def is_only_loaded(view: TargetView, package: Package) -> bool:
     """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
     plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
-    return plugins and not any(
-        found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
-    )
+    return plugins and not _list_finders(view).get(package.name, set()) - {package.name}
+
+
+@kept_with
+def _list_finders(view: TargetView) -> dict[str, set[str]]:
+    """What CMake looks for, with the packages of the workspace that do."""
+    finders: dict[str, set[str]] = {}
+    for package in view.everyone():
+        for found in package.build.found:
+            finders.setdefault(found.name, set()).add(package.name)
+    return finders

@@ -23,9 +23,7 @@ Not reported
     whoever starts launch files has; conditional code.
 """
 
-from ...model.view import TargetView, weight
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, Together, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, rule, weight
 from .clean_machine import doubts_of_chance, is_chance
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
@@ -37,13 +35,9 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 def dependency_by_chance(view: TargetView, package: Package):
     declared = view.declared(package)
     for name, needs in find_undeclared(view, package).borrowed.items():
-        strong = [
-            need
-            for need in needs
-            if need.certain and (need.required or need.how == "program") and is_chance(view, package, need, name)
-        ]
-        if strong:
-            first = min(strong, key=weight)
+        strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
+        first = next((need for need in sorted(strong, key=weight) if is_chance(view, package, need, name)), None)
+        if first is not None:
             sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
             yield Diagnostic(
                 first.at,

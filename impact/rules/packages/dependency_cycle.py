@@ -19,8 +19,7 @@ Not reported
     Cycles that only exist with test or documentation dependencies: colcon ignores those that would close a cycle.
 """
 
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, rule
 
 # Every cycle that is found is cut, and the rest searched again. A workspace in which all packages need each other has
 # about as many cycles as dependencies; the first ones are enough.
@@ -60,13 +59,11 @@ def dependency_cycle(view: TargetView):
         first = min(names)
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
-        dependency = next(d for d in package.manifest.dependencies if d.name == names[1])
+        at = view.manifest_place(package, names[1])
         if number == most:
             if view.reports_on(first):
-                at = view.manifest_place(package, dependency)
                 yield Diagnostic(at, "further cycles", first, {"most": most}, "more", (Doubt.UNCHECKED,))
             return
         if view.reports_on(first):
-            at = view.manifest_place(package, dependency)
             yield Diagnostic(at, names[1], first, {"cycle": " → ".join([*names, first])}, kind="cycle")
         needs[first].discard(names[1])

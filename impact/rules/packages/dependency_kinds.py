@@ -1,14 +1,11 @@
 """Dependencies that are declared, and not for what they are used, as the rules on them ask for it."""
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Set
 from typing import NamedTuple
 
 from ....edges.memory import kept_with
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
-from ..evidence import circular
-from ..rule import Declare, Remove
-from .clean_machine import TEST_HEADERS
+from ..vocabulary import Declare, Need, Package, Remove, TargetView
+from .clean_machine import TEST_HEADERS, circular
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
 _FOR_BUILD = frozenset({"build", "buildtool"})
@@ -28,12 +25,8 @@ class WrongKind(NamedTuple):
 
 
 @kept_with
-def list_wrong_kinds(view: TargetView, package: Package) -> list[WrongKind]:
+def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
-    return list(_list_wrong_kinds(view, package))
-
-
-def _list_wrong_kinds(view: TargetView, package: Package) -> Iterator[WrongKind]:
     declared = view.declared(package)
     seen: set[str] = set()
     brought: dict[Set[str], frozenset[str]] = {}

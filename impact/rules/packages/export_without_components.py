@@ -21,9 +21,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, package_of, public_links
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, read_ament_exports
 
 _COMPONENTS = "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)"

@@ -26,10 +26,8 @@ Not reported
 
 import re
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 # How packages that install find modules are called.
 _BRINGS_MODULES = re.compile(r"cmake_modules?\Z")

@@ -1,8 +1,7 @@
 """Folders that headers lie in, as far as whoever is not given their package misses them: now, or after an update."""
 
-from ...model.view import TargetView
 from ...targets.surface.offers import Offers
-from ..rule import Doubt
+from ..vocabulary import Doubt, TargetView
 
 # System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
 # hand: the stored index has headers by the path that dependants write, below whichever folder.

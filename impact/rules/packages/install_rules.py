@@ -1,22 +1,21 @@
 """The install rules of packages, as the rules on them ask for it."""
 
 import posixpath
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
+from ....edges.memory import kept_with
 from ...model.cmake.build import Install
 from ...model.cmake.installed import copied_files, lets_in
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 
-def list_installing(view: TargetView) -> Iterator[tuple[Package, list[Install]]]:
-    """The packages whose install rules are known, with those that count on the target."""
-    for package in view:
-        if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
-            continue
-        if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
-            continue
-        yield package, [i for i in package.build.installs if view.active(i.conditions)]
+def read_installs(view: TargetView, package: Package) -> list[Install] | None:
+    """The install rules of a package that count on the target; None where they are not known."""
+    if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+        return None
+    if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
+        return None
+    return [i for i in package.build.installs if view.active(i.conditions)]
 
 
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:
@@ -54,8 +53,15 @@ def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str]
     return frozenset(found)
 
 
-def list_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
-    """Package to what the workspace's launch files and scripts start or open in it: kind to names."""
+def list_references(view: TargetView, package: Package, *kinds: str) -> set[str]:
+    """What the workspace's launch files and scripts start or open in a package; of all kinds where none is given."""
+    found = _list_all_references(view).get(package.name, {})
+    return set().union(*(found.get(kind, ()) for kind in kinds or found))
+
+
+@kept_with
+def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
+    """Package to kind to names."""
     found: dict[str, dict[str, set[str]]] = {}
     for package in view.workspace:
         for use in package.digest.references:

@@ -21,25 +21,10 @@ Use instead
 
 import re
 
-from ...facts.manifest import ANY_FORMAT
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ...facts.manifest import ANY_FORMAT, TAGS
+from ..vocabulary import At, Diagnostic, Doubt, Replace, Text, Workspace, rule
 
 _HELP = "[[write `{replacement}`]]"
-_TAGS = {
-    1: ("build_depend", "buildtool_depend", "run_depend", "test_depend"),
-    2: (
-        "build_depend",
-        "build_export_depend",
-        "buildtool_depend",
-        "buildtool_export_depend",
-        "depend",
-        "doc_depend",
-        "exec_depend",
-        "test_depend",
-    ),
-}
 
 
 @rule(
@@ -65,7 +50,7 @@ def invalid_manifest(workspace: Workspace):
         for tag, text, line in manifest.unknown_tags:
             misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
-            known = words in _TAGS[min(manifest.format, 2)]
+            known = words in TAGS[min(manifest.format, 3)]
             data = {"text": text, "format": manifest.format, "replacement": f"<{words}>" if words != tag else ""}
             fix = _respell(path, line, tag, words) if known else ()
             yield Diagnostic(At(path, line), tag, package.name, data, "tag", fix=fix)

@@ -19,10 +19,8 @@ Use instead
 """
 
 from ...model.cmake.build import FoundPackage
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import gone_component
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

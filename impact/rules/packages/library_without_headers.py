@@ -22,9 +22,7 @@ Not reported
 
 import re
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind
 
 
@@ -67,9 +65,8 @@ def library_without_headers(view: TargetView, package: Package):
         if name is None or right is None:
             continue
         seen.add(need.providers[0].name)
-        place = next(d for d in package.manifest.dependencies if d.name == name)
         data, doubts = {"declared": name, "header": need.subject}, (_lacks(view, package, need) or Doubt.INCOMPLETE,)
-        yield Diagnostic(view.manifest_place(package, place), right, package.name, data, "bare", doubts)
+        yield Diagnostic(view.manifest_place(package, name), right, package.name, data, "bare", doubts)
 
 
 def _lacks(view: TargetView, package, need) -> bool:
@@ -91,11 +88,10 @@ def _list_handed_on(view: TargetView, package, declared, bare, need, seen):
     if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
         return
     seen.add(right)
-    place = next(d for d in package.manifest.dependencies if d.name == name)
     tag = "run_depend" if package.manifest.format == 1 else "depend"
     data = {"declared": name, "header": need.subject, "tag": tag}
     fix = fix_kind(view, package, right, "depend", declared[right])
-    at = view.manifest_place(package, place)
+    at = view.manifest_place(package, name)
     together = (Together(f"`{name}` without headers", everywhere=True),)
     yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix, together=together)
 

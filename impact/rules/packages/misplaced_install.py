@@ -29,15 +29,14 @@ import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.cmake.build import Install
 from ...model.cmake.installed import copied_files
 from ...model.cmake.links import linked_items, package_of
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
-from .install_rules import is_installed, list_installing, list_references
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_references, read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "doubled": Text(
@@ -72,16 +71,10 @@ from .install_rules import is_installed, list_installing, list_references
         ),
     },
 )
-def misplaced_install(view: TargetView):
-    references = list_references(view)
-    for package, installs in list_installing(view):
-        yield from _list_doubled(view, package, installs)
-        yield from _list_not_executable(view, package, installs)
-        yield from _list_renamed(view, package, installs)
-        yield from _list_components(view, package, installs)
-        yield from _list_programs(view, package, installs, references.get(package.name, {}).get("executable", set()))
-        yield from _list_other_python(view, package, installs)
-        yield from _list_plain(view, package, installs)
+def misplaced_install(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    for find in _FAULTS if installs else ():
+        yield from find(view, package, installs)
 
 
 def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
@@ -186,39 +179,33 @@ def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
     components = {e.context for e in package.build.exports if e.how == "component" and view.active(e.conditions)}
     by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
-    placed = _list_placed(installs)
-    for name in sorted(components & by_name & placed.keys()):
-        folders = {install.destination.rstrip("/") for install in placed[name]}
-        if "lib" in folders or any("$" in folder or not folder for folder in folders):
-            continue
-        data = {"destination": placed[name][0].destination}
-        yield Diagnostic(placed[name][0].at, name, package.name, data, "component", (Doubt.LATE,))
+    for name in sorted(components & by_name):
+        place = _find_wrong_place(installs, name, "lib")
+        if place is not None:
+            data = {"destination": place.destination}
+            yield Diagnostic(place.at, name, package.name, data, "component", (Doubt.LATE,))
 
 
-def _list_placed(installs) -> dict[str, list]:
-    """Targets, each with the rules that install it."""
-    placed: dict[str, list] = {}
-    for install in installs:
-        for item in install.items if install.kind == "targets" else ():
-            placed.setdefault(item, []).append(install)
-    return placed
+def _find_wrong_place(installs, target: str, folder: str) -> Install | None:
+    """The first rule that installs a target, where surely none does into its folder."""
+    rules = [install for install in installs if install.kind == "targets" and target in install.items]
+    folders = {install.destination.rstrip("/") for install in rules}
+    known = folder not in folders and not any("$" in place or not place for place in folders)
+    return rules[0] if rules and known else None
 
 
-def _list_programs(view: TargetView, package, installs, started: set[str]) -> Iterator[Diagnostic]:
+def _list_programs(view: TargetView, package, installs) -> Iterator[Diagnostic]:
     """Nodes of ROS 2, and programs that a launch file starts, that no rule installs where those who start them look."""
-    placed = _list_placed(installs)
+    started = list_references(view, package, "executable")
     for target in package.build.targets:
-        if target.kind != "executable" or target.name not in placed:
+        place = _find_wrong_place(installs, target.name, f"lib/{package.name}")
+        if target.kind != "executable" or place is None:
             continue
         node = view.target.ros == 2 and "rclcpp" in {
             package_of(item) for item in linked_items(package, target.name) or ()
         }
         if not node and (target.output_name or target.name) not in started:
             continue
-        folders = {install.destination.rstrip("/") for install in placed[target.name]}
-        if f"lib/{package.name}" in folders or any("$" in folder or not folder for folder in folders):
-            continue
-        place = placed[target.name][0]
         command = "ros2 run" if view.target.ros == 2 else "rosrun"
         data = {"destination": place.destination, "command": command}
         yield Diagnostic(place.at, target.name, package.name, data, "program", (Doubt.LATE,))
@@ -256,3 +243,9 @@ def _list_plain(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 data = {"platform": target.platform, "cure": cure}
                 doubts = (Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
                 yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
+
+
+_FAULTS = (
+    *(_list_doubled, _list_not_executable, _list_renamed, _list_components, _list_programs, _list_other_python),
+    _list_plain,
+)

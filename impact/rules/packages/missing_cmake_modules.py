@@ -23,9 +23,7 @@ Not reported
     whose catkin components finds cmake_modules in turn.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

@@ -27,10 +27,8 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.links import exported_targets, passed_on_package, public_links
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder

@@ -30,11 +30,10 @@ from collections.abc import Iterator
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
-from ...model.view import Need, TargetView, interface_of
-from ...model.workspace import Package
+from ...model.view import interface_of
 from ...targets.providers.libraries import system_libraries
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .unset_library_variable import fold
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
@@ -108,7 +107,8 @@ def missing_find_package(view: TargetView, package: Package):
         if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
             continue
         header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
-        if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
+        named = {p.name for p in need.providers}
+        if not ros and any(p.name in named for f in found for p in view.cmake(f)):
             continue
         seen.add(name)
         counts = name in view.declared(package) and ros and not header_only
@@ -163,7 +163,3 @@ def _only_placed(view: TargetView, package):
             continue  # it may come along with those
         data = {"header": use.path, "vendor": vendor, "version": version}
         yield Diagnostic(asked.at, library, package.name, data, "placed", (asked.required or Doubt.OPTIONAL,))
-
-
-def _cmake_of(view: TargetView, name: str) -> set[str]:
-    return {p.name for p in view.cmake(name)}

@@ -20,9 +20,7 @@ Not reported
     Packages that use the include directories of any package of ROS, since all of ROS lies in one folder.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

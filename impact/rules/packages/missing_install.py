@@ -26,20 +26,17 @@ Not reported
 
 import posixpath
 import re
-from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
-from .install_rules import is_installed, list_installing, list_references
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_references, read_installs
 
 _ONCE = (Together("no target installed"),)
 _TARGETS = "add it to install(TARGETS ...)"
 
 
 @rule(
-    scope="target",
     texts={
         "started": Text("`{subject}` is not installed, although a launch file starts it", _TARGETS),
         "exported": Text("`{subject}` is not installed, although it is exported", _TARGETS),
@@ -49,14 +46,11 @@ _TARGETS = "add it to install(TARGETS ...)"
         "nothing": Text("`{subject}` is not installed: `{package}` installs no target at all", _TARGETS),
     },
 )
-def missing_install(view: TargetView):
-    references = list_references(view)
-    for package, installs in list_installing(view):
-        started = references.get(package.name, {}).get("executable", set())
-        yield from _list_targets(view, package, installs, started)
-
-
-def _list_targets(view: TargetView, package, installs, started: set[str]) -> Iterator[Diagnostic]:
+def missing_install(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    if installs is None:
+        return
+    started = list_references(view, package, "executable")
     installed = {item for i in installs if i.kind == "targets" for item in i.items}
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return

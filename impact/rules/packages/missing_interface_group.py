@@ -23,10 +23,8 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Declare, Diagnostic, Doubt, Text, rule
+from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _GROUP = "rosidl_interface_packages"
 # From here on, at the latest, rosidl_generate_interfaces() asks. Source: its CMake code in rosidl_cmake, whose change
@@ -50,12 +48,7 @@ def missing_interface_group(view: TargetView, package: Package):
         if generated.how == "rosidl" and view.certain(generated.conditions) and not for_tests(generated.conditions):
             stops = generated.installed and at_least(view.target.version("rosidl_cmake") or "0", _ASKS)
             doubts = (stops or Doubt.DISTURBS,)
-            yield Diagnostic(generated.at, _GROUP, package.name, doubts=doubts, fix=_join_group(package))
+            join = Declare(package.digest.manifest_path, _GROUP, "member_of_group")
+            fix = (join,) if package.manifest.format >= 3 else ()  # groups came with it
+            yield Diagnostic(generated.at, _GROUP, package.name, doubts=doubts, fix=fix)
             break
-
-
-def _join_group(package) -> tuple[Declare, ...]:
-    """Groups came with format 3."""
-    if package.manifest.format < 3:
-        return ()
-    return (Declare(package.digest.manifest_path, _GROUP, "member_of_group"),)

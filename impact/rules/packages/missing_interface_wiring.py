@@ -21,18 +21,15 @@ Not reported
 import re
 
 from ....edges.reach import walk
-from ...model.view import TargetView, interface_of
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Insert, Text, rule
+from ...model.view import interface_of
+from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, rule
 
 
 @rule(
     severity="warning",
-    texts={
-        "order": Text(
-            "`{header}` may be generated after its users are built: {targets}", "add_dependencies({target} {variable})"
-        ),
-    },
+    texts=Text(
+        "`{header}` may be generated after its users are built: {targets}", "add_dependencies({target} {variable})"
+    ),
 )
 def missing_interface_wiring(view: TargetView, package: Package):
     if package.build_type != "catkin":
@@ -79,7 +76,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
         names = tuple(sorted({t.name for _, t in uses}))
         data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
         fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _component(package, head) else ()
-        yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "order", (Doubt.LATE,), fix=fix)
+        yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix)
 
 
 def _find_orders(package) -> dict[str, set[str]]:

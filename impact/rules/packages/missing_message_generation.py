@@ -20,9 +20,7 @@ Not reported
     Packages that find a generator themselves, or genmsg, which looks for those that are installed.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

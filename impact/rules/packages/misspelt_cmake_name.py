@@ -30,9 +30,7 @@ from collections.abc import Iterator
 from ...model.cmake.links import stops_at_names
 from ...model.cmake.names import MODULES
 from ...model.misspelling import SpellingIndex, folded, is_slip
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Replace, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, doubts_of_place, rule
 
 _PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
 # Letters of a library's name: shorter ones are alike by chance.

@@ -22,21 +22,12 @@ Not reported
 import re
 
 from ...model.misspelling import is_slip
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, Doubt, Replace, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, Together, rule
 
-_SUFFIXES = (
-    "_INCLUDE_DIRS",
-    "_INCLUDE_DIR",
-    "_LIBRARIES",
-    "_LIBRARY",
-    "_LIBS",
-    "_EXPORTED_TARGETS",
-    "_DEFINITIONS",
-    "_VERSION",
-)
+_VARIABLE = re.compile(
+    r"(.+)(_(?:INCLUDE_DIRS?|LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS|DEFINITIONS|VERSION))\Z"
+)  # fmt: skip
 
 
 @rule(
@@ -53,6 +44,7 @@ _SUFFIXES = (
 def misspelt_cmake_variable(view: TargetView, package: Package):
     found = sorted({f.name for f in package.build.found})
     folded = {name.lower(): name for name in found}
+    prefixes = {f.prefix for f in package.build.found}  # of variables, in calls other than find_package()
     seen = set()
     for use in package.build.uses:
         if use.name in seen or use.kind != "variable" or not view.active(use.conditions):
@@ -63,14 +55,12 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
             data = {"variable": use.alike, "replacement": f"${{{use.alike}}}"}
             yield Diagnostic(use.at, use.name, package.name, data, "alike", (Doubt.INCOMPLETE,), fix=fix)
             continue
-        for suffix in _SUFFIXES:
-            if use.name.endswith(suffix):
-                stem = use.name[: -len(suffix)]
-                break
-        else:
+        match = _VARIABLE.match(use.name)
+        if match is None:
             continue
+        stem, suffix = match.groups()
         meant = next((name for name in found if name.isidentifier() and _is_misspelt(stem, name)), None)
-        if meant is not None and not view.cmake(stem) and use.name not in _set_by_hand(package):
+        if meant is not None and not view.cmake(stem) and stem not in prefixes:
             seen.add(use.name)
             yield _diagnose_variable(package, use, meant, f"{meant}{suffix}", "variable")
             continue
@@ -89,7 +79,7 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
             )
         if right is not None:
             seen.add(use.name)
-            if use.name in _set_by_hand(package):
+            if stem in prefixes:
                 continue
             yield _diagnose_variable(package, use, meant, right, "other variable")
 
@@ -104,11 +94,6 @@ def _is_misspelt(stem: str, name: str) -> bool:
         and stem.lower() != name.lower()
         and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
     )
-
-
-def _set_by_hand(package) -> set[str]:
-    """Variables that calls other than find_package() name the beginning of."""
-    return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
 
 
 def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Diagnostic:

@@ -26,11 +26,8 @@ import posixpath
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 
-from ...model.package import ReferenceUse
 from ...model.python.programs import list_programs
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 
 
 @rule(
@@ -51,26 +48,15 @@ def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagn
         owner = view.workspace.packages.get(reference.package)
         if use.role == "test" or reference.kind != "executable" or "$" in reference.name or not reference.name:
             continue
-        if owner is not None:
-            yield from _check_program(view, package, use, owner)
-
-
-def _check_program(view: TargetView, package: Package, use: ReferenceUse, owner: Package) -> Iterator[Diagnostic]:
-    name = use.reference.name
-    programs = list_programs(owner)
-    if programs is None:
-        return
-    folders = {folder for known, folder in programs.items() if fnmatchcase(name, known) for folder in folder}
-    own = f"lib/{owner.name}"
-    if own in folders or "" in folders or any("$" in folder for folder in folders):
-        return
-    doubts = [*doubts_of_place(view, use.role)]
-    if use.reference.conditional:
-        doubts.append(Doubt.CONDITIONAL)
-    data = {"upstream": owner.name, "alike": "", "folder": ""}
-    if folders:
-        data["folder"] = min(folders)
-    else:
-        close = difflib.get_close_matches(posixpath.basename(name), [one for one in programs if "*" not in one], 1)
-        data["alike"] = close[0] if close else ""
-    yield Diagnostic(use.at, name, package.name, data, "folder" if folders else "", doubts=tuple(doubts))
+        name, programs = reference.name, list_programs(owner) if owner is not None else None
+        if owner is None or programs is None:
+            continue
+        folders = {folder for known, folder in programs.items() if fnmatchcase(name, known) for folder in folder}
+        own = f"lib/{owner.name}"
+        if own in folders or "" in folders or any("$" in folder for folder in folders):
+            continue
+        doubts = (*doubts_of_place(view, use.role), not reference.conditional or Doubt.CONDITIONAL)
+        plain = [one for one in programs if "*" not in one] if not folders else []
+        close = difflib.get_close_matches(posixpath.basename(name), plain, 1)
+        data = {"upstream": owner.name, "alike": close[0] if close else "", "folder": min(folders, default="")}
+        yield Diagnostic(use.at, name, package.name, data, "folder" if folders else "", doubts)

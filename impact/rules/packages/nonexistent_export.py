@@ -31,10 +31,8 @@ import re
 from collections.abc import Iterator
 
 from ...model.misspelling import SpellingIndex
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .ament_exports import list_installed_targets, read_ament_exports
 from .install_rules import is_installed
 

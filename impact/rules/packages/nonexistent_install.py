@@ -27,15 +27,12 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .absent_paths import is_absent
-from .install_rules import list_installing
+from .install_rules import read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
@@ -56,8 +53,9 @@ from .install_rules import list_installing
         ),
     },
 )
-def nonexistent_install(view: TargetView):
-    for package, installs in list_installing(view):
+def nonexistent_install(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    if installs is not None:
         yield from _list_absent(view, package, installs)
         yield from _list_absent_targets(view, package, installs)
         yield from _list_unset(view, package)

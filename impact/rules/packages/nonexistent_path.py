@@ -35,10 +35,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.condition import Condition
-from ...model.cmake.build import At, BuildTarget, for_tests
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ...model.cmake.build import BuildTarget, for_tests
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
 

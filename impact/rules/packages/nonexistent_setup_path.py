@@ -22,25 +22,13 @@ Not reported
 import posixpath
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from ...facts.setup import SetupFile
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 from .absent_paths import is_absent
 
-_PATTERN = re.compile(r"[*?\[]")
-
-
-class _ListedPath(NamedTuple):
-    """What a setup file names, and its path below the package. kind: of the text that reports it."""
-
-    name: str
-    path: str
-    line: int
-    kind: str
+# Patterns, and paths of the machine.
+_PATTERN = re.compile(r"[*?\[]|^/")
 
 
 @rule(
@@ -65,29 +53,27 @@ def nonexistent_setup_path(view: TargetView, package: Package):
         folder = posixpath.dirname(file)
         if folder != package.path:
             continue
-        for named in _list_paths(setup):
-            place = posixpath.normpath(posixpath.join(folder, named.path))
-            inside = posixpath.relpath(place, folder or ".")
-            if inside.startswith(".."):
+        for name, path, line, kind in _list_paths(setup):
+            place = posixpath.normpath(posixpath.join(folder, path))
+            if posixpath.relpath(place, folder or ".").startswith(".."):
                 continue
-            if named.kind == "package" and f"{place}.py" in package.files:
+            if kind == "package" and f"{place}.py" in package.files:
                 continue  # some list single modules as packages
-            is_folder = place in package.folders and named.kind != "package"
+            is_folder = place in package.folders and kind != "package"
             if is_folder or is_absent(view, package, place):
-                kind = "folder" if is_folder else named.kind
-                yield Diagnostic(At(file, named.line), named.name, package.name, {}, kind)
+                yield Diagnostic(At(file, line), name, package.name, {}, "folder" if is_folder else kind)
 
 
-def _list_paths(setup: SetupFile) -> Iterator[_ListedPath]:
+def _list_paths(setup: SetupFile) -> Iterator[tuple[str, str, int, str]]:
+    """What a setup file names, its path below the package, the line, and the kind of the text that reports it."""
     seen = set()
     for _, path, line in setup.data_files:
-        if path and path not in seen and not _PATTERN.search(path) and not path.startswith("/"):
+        if path and path not in seen and not _PATTERN.search(path):
             seen.add(path)
-            yield _ListedPath(path, path, line, "file")
+            yield path, path, line, "file"
     for path in setup.scripts:
-        if not _PATTERN.search(path) and not path.startswith("/"):
-            yield _ListedPath(path, path, 1, "file")
+        if not _PATTERN.search(path):
+            yield path, path, 1, "file"
     for name in setup.packages:
-        _, package = setup.places_of("", name)
         if name != "*":
-            yield _ListedPath(name, posixpath.dirname(package), 1, "package")
+            yield name, posixpath.dirname(setup.places_of("", name)[1]), 1, "package"

@@ -15,10 +15,8 @@ Use instead
     <buildtool_depend condition="$ROS_VERSION == 1">catkin</buildtool_depend>
 """
 
-from ...model.cmake.build import At
 from ...model.package import build_type_of
-from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 
 @rule(
@@ -45,7 +43,7 @@ def _other(view: TargetView, package) -> bool:
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)
     return build_type.startswith(tool) and any(
-        d.name.startswith(tool) and (not d.condition or view.active_manifest(d.condition))
+        d.name.startswith(tool) and view.active_manifest(d.condition)
         for d in package.manifest.dependencies
         if d.kind in ("buildtool", "build")
     )

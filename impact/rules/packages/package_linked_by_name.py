@@ -20,9 +20,7 @@ Not reported
     Packages of catkin; packages whose exports are not known; names that a system library may have.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, doubts_of_place, rule
 
 
 @rule(

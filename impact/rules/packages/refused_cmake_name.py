@@ -33,10 +33,8 @@ from ...model.cmake.conditions import version_key
 from ...model.cmake.interpreter import HANDLERS, WRAPPERS
 from ...model.cmake.names import COMMANDS
 from ...model.misspelling import is_slip
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 
 # From here on ament_python_install_package() makes custom targets. Source: commit 42b972e of ament_cmake.
 _MAKES_TARGETS = "1.1.0"

@@ -20,9 +20,7 @@ Not reported
     Names that were found before on their own, since CMake remembers where; packages of the workspace.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(

@@ -17,9 +17,7 @@ Not reported
 """
 
 from ...model.cmake.links import stops_at_names
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(

@@ -17,9 +17,7 @@ Not reported
     Packages that declared ones bring along, optional ones, and those under a condition that is unknown on the target.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
 _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})

@@ -21,9 +21,7 @@ Not reported
     Names in variables whose value is unknown.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 # Source: ament_cmake_auto's ament_auto_find_build_dependencies.cmake, the same in all distros.
 _KINDS = frozenset(("build", "buildtool", "test"))

@@ -4,11 +4,8 @@ from typing import NamedTuple
 
 from ....edges.memory import kept_with
 from ...model.misspelling import folded, one_edit
-from ...model.view import Need, TargetView
-from ...model.workspace import Package
-from ..evidence import circular, name_to_declare, present
-from ..rule import Declare
-from .clean_machine import TEST_HEADERS
+from ..vocabulary import Declare, Need, Package, TargetView
+from .clean_machine import TEST_HEADERS, circular
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>` to {manifest}"
@@ -28,18 +25,32 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
     closure, declared = view.closure(package), view.declared(package)
     found = Undeclared({}, {})
-    elsewhere = {d.name for d in package.manifest.dependencies if not present(view, d.name)}  # for other distros
+    elsewhere = {d.name for d in package.manifest.dependencies if not view.available(d.name)}  # for other distros
     for need in view.needs(package):
         if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        carried = need.providers[0].kind == "system" and need.how != "import"
-        if carried and view.unknown_contents.is_likely(package, need.subject):
+        name = _name_to_declare(view, need)
+        if name is None or name == package.name or name in elsewhere:
             continue
-        name = name_to_declare(view, need)
-        if name is not None and name != package.name and name not in elsewhere:
+        carried = need.providers[0].kind == "system" and need.how != "import"
+        if not (carried and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.answered(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
+
+
+def _name_to_declare(view: TargetView, need: Need) -> str | None:
+    """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
+    the package that is named by its form, wherever it comes from."""
+    other = "python3-" if view.target.python_major == 2 else "python-"
+    for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
+        if provider.name and view.available(provider.name):
+            return provider.name
+    first = need.providers[0]
+    if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:
+        return None
+    meant = first.name == need.subject.partition(".")[0] and not view.target.other_generation(first.name)
+    return first.name if meant else None
 
 
 def describe_need(package: Package, need: Need) -> dict[str, str]:
@@ -71,9 +82,9 @@ def _describe_use(need: Need) -> str:
 def declare_need(view: TargetView, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
     """Declares what answers a need; nothing where the manifest has the name with a letter wrong, which another rule
     repairs."""
-    if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
+    if any((folded(d) == folded(name) or one_edit(d, name)) and not view.available(d) for d in view.declared(package)):
         return ()
-    if circular(view, package, name) or not present(view, name):
+    if circular(view, package, name) or not view.available(name):
         return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 

@@ -33,9 +33,7 @@ Not reported
     provide (they are counted as unresolved), unless the form of the use says that a package is meant.
 """
 
-from ...model.view import TargetView, weight
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule, severity
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, severity, weight
 from .clean_machine import ASKED, doubts_of_missing
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 

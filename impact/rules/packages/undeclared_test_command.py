@@ -22,11 +22,8 @@ Not reported
 """
 
 from ....edges.memory import kept_with
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Provider
-from ..evidence import present
-from ..rule import Declare, Diagnostic, Doubt, Text, rule
+from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 # What the packages that make tests of some kind are made of.
 _TESTS = "ament_cmake_test"
@@ -45,7 +42,7 @@ def undeclared_test_command(view: TargetView, package: Package):
     reported = set()
     for use in package.build.uses:
         name = find_test_commands(view).get(use.name) if use.kind == "command" else None
-        if name in (None, package.name, *reported) or not view.active(use.conditions) or not present(view, name):
+        if name in (None, package.name, *reported) or not view.active(use.conditions) or not view.available(name):
             continue
         reported.add(name)
         if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):

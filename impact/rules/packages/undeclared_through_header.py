@@ -23,10 +23,8 @@ Not reported
 """
 
 from ....edges.memory import kept_with
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Provider
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .clean_machine import doubts_of_compiled
 
 
@@ -66,16 +64,19 @@ def _follow(view: TargetView, start: str, owner: Provider) -> list[tuple[str, st
     found: dict[str, str] = {}
     seen, waiting = {start}, [start] if owner.kind == "ros" else []
     while waiting:
-        for header in view.machine.always_included(waiting.pop()):
-            if header in seen or "/" not in header:
+        for header, name in _list_owned(view, waiting.pop()):
+            if header in seen:
                 continue
             seen.add(header)
-            providers = view.header(header)
-            if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
-                continue
-            name = providers[0].name
             if name == owner.name:
                 waiting.append(header)
             elif view.target.version(name):
                 found.setdefault(name, header)
     return list(found.items())
+
+
+@kept_with
+def _list_owned(view: TargetView, header: str) -> list[tuple[str, str]]:
+    """What a released header always includes of packages of ROS, each with the one package that has it."""
+    asked = ((path, view.header(path)) for path in view.machine.always_included(header) if "/" in path)
+    return [(path, has[0].name) for path, has in asked if len(has) == 1 and has[0].kind == "ros" and has[0].sure]

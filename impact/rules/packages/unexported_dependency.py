@@ -18,9 +18,7 @@ Not reported
     What another dependency that is passed on brings.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependency_kinds import FOR_RUN, fix_kind, list_wrong_kinds
 
 _ONCE = (Together("not handed on"),)
@@ -71,8 +69,7 @@ def _list_linked(view: TargetView, package: Package):
         exported = exported if exported is not None else view.spread(n for n, k in declared.items() if k & FOR_RUN)
         if name in exported:
             continue
-        place = next(d for d in package.manifest.dependencies if d.name == name)
         data = {"library": item, "tag": _tag(package)}
         fix = fix_kind(view, package, name, "depend", kinds)
-        at = view.manifest_place(package, place)
+        at = view.manifest_place(package, name)
         yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix, together=_ONCE)

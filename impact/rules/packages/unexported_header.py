@@ -28,13 +28,10 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.cmake.installed import installed_headers
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 from .ament_exports import list_installed_targets
 
 
@@ -59,7 +56,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
     """package: the one whose headers others include."""
     if package.name not in view.workspace.includers or not _is_known(package):
         return
-    headers = {f"/{path}": path for path in package.digest.headers if "/include/" in f"/{path}"}
+    headers = _list_written(package)
     kind = _find_kind(view, package)
     installed = installed_headers(package)
     libraries = _list_libraries(package) if kind == "library" else {}
@@ -71,8 +68,8 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
         if package.name not in found:
             continue  # missing-find-package reports it
         for include in other.digest.includes:
-            path = next((p for end, p in headers.items() if end.endswith(f"/include/{include.path}")), "")
-            if not path or not include.targets or not view.certain(include.conditions):
+            path = headers.get(include.path)
+            if path is None or not include.targets or not view.certain(include.conditions):
                 continue
             if kind == "not installed" and path in installed.headers:
                 continue
@@ -88,6 +85,18 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
             lasting = {"include dirs": Doubt.DISTURBS, "library": Doubt.INCOMPLETE}.get(kind)
             yield Diagnostic(at, include.path, package.name, data, kind, (*doubts, lasting))
             return
+
+
+def _list_written(package: Package) -> dict[str, str]:
+    """Headers of the package, by what dependants may write where a folder called include is searched."""
+    found: dict[str, str] = {}
+    for path in package.digest.headers:
+        inside = f"/{path}"
+        while "/include/" in inside:
+            inside = inside.partition("/include/")[2]
+            found.setdefault(inside, path)
+            inside = f"/{inside}"
+    return found
 
 
 def _is_known(package: Package) -> bool:

@@ -27,9 +27,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import CMakeExport
 from ...model.cmake.links import exported_targets
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
 from .include_folders import OFF_PATH
 
@@ -156,18 +154,9 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
     """Header-only packages that leave the include folder of a system library out."""
     if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
         return
-    seen = set()
-    for need in view.weighed(package):
-        name = need.providers[0].name
-        if need.how != "include" or not need.public or not need.certain or name not in OFF_PATH or name in seen:
-            continue
-        if view.answered(need.providers, ament.found):
-            continue
-        if any("$" in e.item for e in ament.exports if "include" in e.how):
-            continue
-        seen.add(name)
-        data = {"header": need.subject}
-        yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))
+    if not any("$" in e.item for e in ament.exports if "include" in e.how):
+        public = [need for need in view.weighed(package) if need.public]
+        yield from _list_missed(view, package, public, ament.found)
 
 
 def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -180,14 +169,22 @@ def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     reach = view.roles.found_with({e.item for e in exports if e.how in ("catkin_depends", "system_depends")})
     handed = {e.item.lower() for e in exports if e.how == "system_depends"}
     folders = tuple(f"{e.item.rstrip('/')}/" for e in exports if e.how == "include_dirs")
+    public = [need for need in view.weighed(package) if need.at.path.startswith(folders)]
+    for missed in _list_missed(view, package, public, reach):
+        if not any(item.startswith(missed.subject[:5]) for item in handed):  # EIGEN3 is what CMake calls eigen
+            yield missed
+
+
+def _list_missed(
+    view: TargetView, package: Package, needs: list[Need], reach: frozenset[str]
+) -> Iterator[Diagnostic]:
+    """Includes of system libraries off the compiler's path that nothing which dependants find brings."""
     seen = set()
-    for need in view.weighed(package):
+    for need in needs:
         name = need.providers[0].name
         if need.how != "include" or not need.certain or name not in OFF_PATH or name in seen:
             continue
-        if not need.at.path.startswith(folders) or view.answered(need.providers, reach):
-            continue
-        if any(item.startswith(name[:5]) for item in handed):  # EIGEN3 is what CMake calls eigen
-            continue
-        seen.add(name)
-        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include directory", (Doubt.DISTURBS,))
+        if not view.answered(need.providers, reach):
+            seen.add(name)
+            data = {"header": need.subject}
+            yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))

@@ -27,9 +27,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import BuildTarget, Link
 from ...model.cmake.links import exported_targets
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _EXPORT = "put `{target}` into an export set with install(TARGETS ... EXPORT ...), and call ament_export_targets()"
 

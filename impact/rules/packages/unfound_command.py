@@ -27,11 +27,10 @@ Not reported
 
 import re
 
+from ....edges.memory import kept_with
 from ...model.cmake.build import for_tests
 from ...model.unknown_contents import FINDING
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 from .undeclared_test_command import find_test_commands
 
 
@@ -62,14 +61,14 @@ def unfound_command(view: TargetView, package: Package):
     found = [f for f in build.found if f.how in FINDING]
     if view.unknown_contents.list_unknown_found(package):
         return
-    with_tests = _list_reached(view, package, {f.name for f in found})
-    built = _list_reached(view, package, {f.name for f in found if not for_tests(f.conditions)})
     seen = set()
     for use in calls:
         owners = commands[use.name].split()
-        reached = with_tests if for_tests(use.conditions) else built
         if not view.active(use.conditions):
             continue
+        testing = for_tests(use.conditions)
+        names = frozenset(f.name for f in found if testing or not for_tests(f.conditions))
+        reached = _list_reached(view, package, names)
         if not reached.isdisjoint(owners) or not any(view.available(owner) for owner in owners):
             continue
         if owners == ["genmsg"] and build.generated:
@@ -79,13 +78,14 @@ def unfound_command(view: TargetView, package: Package):
         owner = _name_to_find(view, package, owners)
         if owner not in seen:
             seen.add(owner)
-            known = not build.unresolved and not view.unknown_contents.list_unknown(frozenset(reached))
+            known = not build.unresolved and not view.unknown_contents.list_unknown(reached)
             doubts = (*doubts_of_place(view, "build", use.conditions), known or Doubt.INCOMPLETE)
             together = view.target.ros == 2 or Doubt.LUCKY
             yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, doubts=(*doubts, together))
 
 
-def _list_reached(view: TargetView, package: Package, names: set[str]) -> frozenset[str]:
+@kept_with
+def _list_reached(view: TargetView, package: Package, names: frozenset[str]) -> frozenset[str]:
     """What finding packages may bring."""
     return view.widest_spread(names) | view.roles.found_with(names) | {package.name}
 

@@ -20,9 +20,7 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _FOLDERS = frozenset({"msg", "srv", "action"})
 

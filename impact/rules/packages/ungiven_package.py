@@ -26,14 +26,14 @@ Not reported
 """
 
 import re
-from collections.abc import Iterator, Set
+from collections.abc import Callable, Iterable, Iterator, Set
+from functools import cache, partial
 
 from ...model.cmake.links import may_hide, package_of, reached_targets
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, doubts_of_folder, shares_one_folder
 
+_FindGiven = Callable[[str], set[str] | None]
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 
 
@@ -44,10 +44,15 @@ _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 def ungiven_package(view: TargetView, package: Package):
     if package.build_type != "ament_cmake" or package.build.unresolved:
         return
-    yield from _list_off_path(view, package)
+    # Many files of a target include the same headers.
+    includes = dict.fromkeys(
+        (i.path, i.targets, i.role) for i in package.digest.includes if i.targets and view.certain(i.conditions)
+    )
+    targets = {t.name: t for t in package.build.targets}
+    find_given = cache(partial(_find_given, targets))
+    yield from _list_off_path(view, package, includes, find_given)
     if shares_one_folder(view):
         return
-    targets = {t.name: t for t in package.build.targets}
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
     everywhere |= {package_of(link.item) for link in package.build.links}
     all_found = {f.name for f in package.build.found}
@@ -56,10 +61,8 @@ def ungiven_package(view: TargetView, package: Package):
         return
     seen = set()
     reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
-    for include in package.digest.includes:
-        providers = view.header(include.path)
-        if not include.targets or not view.certain(include.conditions):
-            continue
+    for path, including, role in includes:
+        providers = view.header(path)
         owners = {p.name for p in providers}
         if not owners.isdisjoint(("", package.name)) or (
             (system := tuple(p for p in providers if p.kind != "ros"))
@@ -72,14 +75,14 @@ def ungiven_package(view: TargetView, package: Package):
         (name,) = names
         if name in seen or name.endswith("_vendor"):
             continue
-        of_folder = doubts_of_folder(view, name, include.path)
+        of_folder = doubts_of_folder(view, name, path)
         if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
-        for target in include.targets:
+        for target in including:
             if target not in reach:
-                items = _find_given(targets, target)
+                items = find_given(target)
                 if items is not None:
-                    items |= _list_of_interfaces(package, items)
+                    items = items | _list_of_interfaces(package, items)
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
                 # A target of the package may be called like the package, and brings none of what that declares.
@@ -97,35 +100,31 @@ def ungiven_package(view: TargetView, package: Package):
                 continue
             seen.add(name)
             certain = view.certain(targets[target].conditions)
-            doubts = (
-                include.role == "build" or Doubt.TEST,
-                certain or Doubt.CONDITIONAL,
-                *of_folder,
-            )
-            data = {"target": target, "header": include.path}
+            doubts = (role == "build" or Doubt.TEST, certain or Doubt.CONDITIONAL, *of_folder)
+            data = {"target": target, "header": path}
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
             break
 
 
-def _list_off_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+def _list_off_path(
+    view: TargetView, package: Package, includes: Iterable[tuple[str, tuple[str, ...], str]], find_given: _FindGiven
+) -> Iterator[Diagnostic]:
     """Targets that include headers of a system library outside of the compiler's default path, which CMake finds, and
-    that are given nothing that may bring its folder."""
+    that are given nothing that may bring its folder. includes: path, targets and role."""
     build = package.build
     targets = {t.name: t for t in build.targets}
     everywhere = [item for item, _ in build.include_dirs] + [link.item for link in build.links]
     seen = set()
-    for include in package.digest.includes:
-        providers = view.header(include.path)[:1]
-        if not include.targets or not providers or providers[0].name not in OFF_PATH:
-            continue
-        if _NAMES_FOLDER.match(include.path):
+    for path, including, role in includes:
+        providers = view.header(path)[:1]
+        if not providers or providers[0].name not in OFF_PATH or _NAMES_FOLDER.match(path):
             continue
         found = ((f.name, view.cmake(f.name)) for f in build.found if f.how == "find_package")
         name, bringing = next(((n, by) for n, by in found if by and by[0].name == providers[0].name), ("", ()))
-        if not name or name in seen or not view.certain(include.conditions):
+        if not name or name in seen:
             continue
-        for target in include.targets:
-            items = _find_given(targets, target)
+        for target in including:
+            items = find_given(target)
             if items is None or not view.certain(targets[target].conditions):
                 continue
             items = {item for item in (*items, *everywhere) if item not in targets}
@@ -138,8 +137,8 @@ def _list_off_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if alike or not all(known.values()) or view.answered(bringing, brought):
                 continue
             seen.add(name)
-            data = {"target": target, "header": include.path}
-            doubts = (include.role == "build" or Doubt.TEST, Doubt.INCOMPLETE)
+            data = {"target": target, "header": path}
+            doubts = (role == "build" or Doubt.TEST, Doubt.INCOMPLETE)
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
             break
 

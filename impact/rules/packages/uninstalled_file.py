@@ -27,16 +27,13 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
-from .install_rules import is_installed, list_installing, list_places, list_references
+from .install_rules import is_installed, list_places, list_references, read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "nothing": Text(
@@ -60,29 +57,23 @@ from .install_rules import is_installed, list_installing, list_places, list_refe
         "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
     },
 )
-def uninstalled_file(view: TargetView):
-    references = list_references(view)
-    for package, installs in list_installing(view):
-        used = references.get(package.name, {})
-        if not installs and package.build_type == "catkin" and not package.build.targets:
-            yield from _list_nothing(package, opened=bool(used))
-        else:
-            yield from _list_opened(package, installs, _list_names(used))
-            yield from _list_scripts(package, installs, used.get("executable", set()))
-    for package in view:
-        copied = list_copied(package)
-        if copied:
-            yield from _list_opened(package, copied, _list_names(references.get(package.name, {})))
+def uninstalled_file(view: TargetView, package: Package):
+    opened = list_references(view, package, "file", "place")
+    started = list_references(view, package, "executable")
+    installs = read_installs(view, package)
+    if installs is None:
+        if copied := list_copied(package):
+            yield from _list_opened(package, copied, opened)
+    elif not installs and package.build_type == "catkin" and not package.build.targets:
+        yield from _list_nothing(package, opened=bool(list_references(view, package)))
+    else:
+        yield from _list_opened(package, installs, opened)
+        yield from _list_scripts(package, installs, started)
 
 
 _ONCE = (Together("not installed"),)
 _FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
-
-
-def _list_names(used: dict[str, set[str]]) -> set[str]:
-    """The files and folders that something opens."""
-    return used.get("file", set()) | used.get("place", set())
 
 
 def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:

@@ -28,9 +28,7 @@ import re
 
 from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependants import compiled_elsewhere
 
 _ONCE = (Together("header not installed", few=2),)

@@ -19,10 +19,7 @@ Not reported
 
 import fnmatch
 
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 from .data_files import read_data_files
 
 

@@ -24,15 +24,12 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.package import role_of_folder
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
-from .install_rules import is_installed, list_installing
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
+from .install_rules import is_installed, read_installs
 
 
 @rule(
-    scope="target",
     group="missing-install",
     texts={
         "no description": Text("the exported plugin description `{subject}` does not exist", "correct the path"),
@@ -46,8 +43,9 @@ from .install_rules import is_installed, list_installing
         ),
     },
 )
-def uninstalled_plugin_description(view: TargetView):
-    for package, installs in list_installing(view):
+def uninstalled_plugin_description(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    if installs is not None:
         yield from _list_descriptions(view, package, installs)
         yield from _list_not_exported(view, package, installs)
 
@@ -58,18 +56,16 @@ def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnost
         value = export.attributes.get("plugin", "")
         if not value.startswith("${prefix}"):
             continue
-        path = posixpath.normpath(posixpath.join(package.path, value[len("${prefix}/") :]))
+        at, file = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
+        path = posixpath.normpath(posixpath.join(package.path, file))
+        if is_installed(package, installs, path):
+            continue
         if path not in package.files:
-            if path + ".in" in package.files or is_installed(package, installs, path):
-                continue
-            at, subject = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
-            yield Diagnostic(at, subject, package.name, kind="no description", doubts=(Doubt.DISTURBS,))
-        elif package.build_type == "catkin" and not is_installed(package, installs, path):
-            at, doubts = At(package.digest.manifest_path, export.line), ()
-            if not _is_shipped(view, package, installs, path):
-                doubts = (Doubt.DISTURBS,)
-            data = {"file": value[len("${prefix}/") :]}
-            yield Diagnostic(at, posixpath.basename(path), package.name, data, "description", doubts)
+            if path + ".in" not in package.files:
+                yield Diagnostic(at, file, package.name, kind="no description", doubts=(Doubt.DISTURBS,))
+        elif package.build_type == "catkin":
+            doubts = (_is_shipped(view, package, installs, path) or Doubt.DISTURBS,)
+            yield Diagnostic(at, posixpath.basename(path), package.name, {"file": file}, "description", doubts)
 
 
 def _is_shipped(view: TargetView, package, installs, description: str) -> bool:

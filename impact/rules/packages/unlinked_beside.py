@@ -19,18 +19,18 @@ Not reported
 
 from ...model.cmake.links import linked_items
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 from .unlinked_library import COMPILED
 
-# As COMPILED, of libraries of which some headers can be used alone, so that another target has to show that they are
-# linked.
-_PARTLY_COMPILED = (
+# Beside those that are always linked, libraries of which some headers can be used alone: another target has to show
+# that they are linked.
+_LIBRARIES = (
+    *COMPILED,
     ("GeographicLib/", "geographiclib"), ("assimp/", "assimp"), ("glog/", "glog"), ("ceres/", "ceres"),
     ("SDL2/", "sdl2"),
 )  # fmt: skip
+_ROOTS = tuple(root for root, _ in _LIBRARIES)
 
 
 @rule(
@@ -45,12 +45,12 @@ def unlinked_beside(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     links: dict[str, set[str] | None] = {}
     seen = set()
-    for root, word in (*COMPILED, *_PARTLY_COMPILED):
+    includes = [i for i in package.digest.includes if i.path.startswith(_ROOTS) and view.certain(i.conditions)]
+    for root, word in _LIBRARIES if includes else ():
         users: dict[str, IncludeUse] = {}
-        for include in package.digest.includes:
-            if include.path.startswith(root) and view.certain(include.conditions):
-                for name in include.targets:
-                    users.setdefault(name, include)
+        for include in includes:
+            for name in include.targets if include.path.startswith(root) else ():
+                users.setdefault(name, include)
         if len(users) < 2:
             continue
         for name in users.keys() - links.keys():

@@ -25,15 +25,25 @@ Not reported
     something that cannot be seen; components that are not asked for where a part of the package's CMake cannot be read.
 """
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Mapping, Set
+from typing import NamedTuple
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ...targets.providers.library import BOOST_COMPILED, compiled_component
-from ..rule import Diagnostic, Doubt, Text, rule
-from .boost_components import BoostComponents, find_linked_components, lacks_boost, list_asked_components
+from ...model.cmake.build import BuildTarget
+from ...model.cmake.links import linked_items
+from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, linked_packages, list_linked, stem_of
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
+
+
+class _BoostComponents(NamedTuple):
+    """What a target is linked to: Boost components, those that it names itself, and whether a dependency may bring
+    more of them."""
+
+    components: frozenset[str]
+    linked: frozenset[str]
+    more: bool
 
 
 @rule(
@@ -48,7 +58,7 @@ _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component
     },
 )
 def unlinked_boost(view: TargetView, package: Package):
-    asked = list_asked_components(view, package)
+    asked = _list_asked_components(view, package)
     if asked is not None and not package.build.unresolved:  # what cannot be read may ask for more
         yield from _list_not_asked_for(view, package, asked)
     yield from _list_unlinked(view, package, asked or frozenset())
@@ -72,7 +82,7 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
     """Headers of compiled Boost libraries in targets that nothing given to them links the component to."""
     boost = view.target.library("boost") or ""
     targets = {t.name: t for t in package.build.targets}
-    given: dict[str, BoostComponents | None] = {}
+    given: dict[str, _BoostComponents | None] = {}
     seen = set()
     for include in package.digest.includes:
         component = compiled_component(include.path, boost)
@@ -84,12 +94,12 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
             if name not in targets or not view.certain(targets[name].conditions):
                 continue
             if name not in given:
-                given[name] = find_linked_components(view, package, targets, name, asked)
+                given[name] = _find_linked_components(view, package, targets, name, asked)
             known = given[name]
             if known is None or component in known.linked:
                 continue
             own = include.role == "build" and include.at.path in targets[name].sources
-            lacking = own and lacks_boost(view, package, targets[name], component)
+            lacking = own and _lacks_boost(view, package, targets[name], component)
             if component in known.components and not lacking:
                 continue
             seen.add(component)
@@ -102,9 +112,90 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
             break
 
 
-def _list_doubts(view: TargetView, include, target, known: BoostComponents) -> tuple[Doubt, ...]:
+def _list_doubts(view: TargetView, include, target, known: _BoostComponents) -> tuple[Doubt, ...]:
     sure = not known.more and target.kind == "executable"
     # Who links a catkin library has Boost from roscpp.
     if include.role != "build" or (view.target.ros == 1 and not sure):
         return (Doubt.DISPENSABLE,)
     return () if sure else (Doubt.INCOMPLETE,)
+
+
+def _list_asked_components(view: TargetView, package: Package) -> Set[str] | None:
+    """The components of Boost that find_package() is given; None where no find_package() asks for Boost."""
+    found = [
+        f for f in package.build.found if f.how == "find_package" and f.name == "Boost" and view.active(f.conditions)
+    ]
+    components = (name for f in found for name in (*(name for name, _ in f.components), *f.optional_components))
+    return frozenset(components) if found else None
+
+
+def _find_linked_components(
+    view: TargetView, package: Package, targets: Mapping[str, BuildTarget], name: str, asked: Set[str]
+) -> _BoostComponents | None:
+    """What a target is linked to, itself or through targets of its package; None when that cannot be seen."""
+    items = linked_items(package, name)
+    if items is None:
+        return None
+    components: set[str] = set()
+    packages: set[str] = set()
+    for item in items:
+        low = item.lower()
+        if low.startswith("boost::"):
+            components.add(low[7:])
+        elif low in ("boost", "${boost_libraries}", "${boost_library}"):
+            components |= asked
+        elif "boost_" in low:
+            components |= {c for c in BOOST_COMPILED if f"boost_{c}" in low}
+        elif match := PACKAGE_VARIABLE.match(item):
+            packages.add(match.group(1))
+        elif "$" in item:
+            return None
+        else:
+            packages.add(item.partition("::")[0])
+    linked = components.union(*(BOOST_BROUGHT.get(c, ()) for c in components))
+    if "catkin" in packages:
+        packages |= {f.name for f in package.build.found if f.how == "catkin"}
+    if any(found.name in _BRING_BOOST for found in package.build.found):
+        return None
+    brought = view.spread(packages - set(targets))
+    if view.target.ros == 1 and "roscpp" in brought:
+        components |= BOOST_OF_ROSCPP
+    components |= {c for c in BOOST_COMPILED if f"libboost-{c.replace('_', '-')}-dev" in brought}
+    # Boost as a whole as a run dependency: somebody's export may name its libraries.
+    more = not brought.isdisjoint(("boost", "libboost-all-dev", "libpcl-all-dev", "libpcl-all", "libpcl-dev"))
+    for extra in list(components):
+        components |= BOOST_BROUGHT.get(extra, set())
+    return _BoostComponents(frozenset(components), frozenset(linked), more)
+
+
+# CMake packages whose libraries come with several of Boost's.
+_BRING_BOOST = frozenset({"PCL", "gazebo", "ompl", "Gazebo", "rosbag2_cpp"})
+
+
+def _lacks_boost(view: TargetView, package: Package, target: BuildTarget, component: str) -> bool:
+    """True for a program of a catkin package to which nothing it is linked to can bring a component of Boost: of all
+    packages that export some of Boost only those of ROS's core are among it, whose components are known."""
+    catkin = package.build_type == "catkin" and view.target.ros == 1
+    if not catkin or component not in _NOT_OF_THE_CORE or target.kind != "executable" or package.build.unresolved:
+        return False
+    linked = list_linked(package, target.name)
+    if linked is None or any("$" in f.name for f in package.build.found):
+        return False
+    if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
+        return False
+    exported = CatkinExports(view)
+    brought = exported.closure(linked_packages(view, package, linked))
+    return brought is not None and all(
+        name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
+    )
+
+
+# Components of Boost that no package of ROS's core finds, and the packages of it that export what they find. Source:
+# find_package(Boost) and catkin_package(DEPENDS) in their CMakeLists.txt, Groovy to Noetic.
+_NOT_OF_THE_CORE = frozenset({"program_options", "serialization", "iostreams", "log", "timer", "locale"})
+_WITH_BOOST_OF_THE_CORE = frozenset(
+    [
+        "Boost", "actionlib", "bondcpp", "class_loader", "cpp_common", "message_filters", "nodelet", "pluginlib",
+        "rosconsole", "roscpp", "roscpp_serialization", "rostime", "tf", "tf2", "tf2_ros", "xmlrpcpp",
+    ]
+)  # fmt: skip

@@ -26,9 +26,7 @@ Not reported
 
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, plain, stem_of
 
 COMPILED = (
@@ -45,6 +43,7 @@ COMPILED = (
 separators. Source: the libraries' documentation. Kept by hand: no stored index tells whether a header can be used
 without the library, which none of these can."""
 _COMPILED = (*COMPILED, ("gtest/gtest.h", "gtest"), ("gmock/gmock.h", "gmock"))
+_STARTS = tuple(start for start, _ in _COMPILED)
 
 
 @rule(
@@ -59,8 +58,9 @@ def unlinked_library(view: TargetView, package: Package):
     includes = [
         (i, word)
         for i in package.digest.includes
+        if i.targets and i.path.startswith(_STARTS)
         for start, word in _COMPILED
-        if i.targets and i.path.startswith(start) and view.certain(i.conditions)
+        if i.path.startswith(start) and view.certain(i.conditions)
     ]
     if not includes or any("$" in f.name for f in package.build.found):
         return

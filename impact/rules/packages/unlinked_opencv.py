@@ -19,10 +19,8 @@ Not reported
 """
 
 from ...model.cmake.build import for_tests
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import OPENCV_FUNCTIONS
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, stem_of
 
 # Distros whose cv_bridge hands on every library of OpenCV.

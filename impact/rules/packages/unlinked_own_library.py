@@ -25,9 +25,7 @@ Not reported
 from collections.abc import Collection
 
 from ...model.cmake.links import linked_items
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .catkin_links import PACKAGE_VARIABLE, plain
 
 

@@ -26,9 +26,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import for_tests
 from ...model.package import IncludeUse
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .catkin_links import CatkinExports, linked_packages, list_linked, plain
 
 

@@ -22,10 +22,7 @@ Not reported
 """
 
 from ...facts.interface import PRIMITIVES, TIMES, full_name
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _FROM_ROS1 = TIMES | {"Header"}
 _ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}

@@ -34,11 +34,8 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.python.programs import ScriptFolder, ScriptSetup, list_started_programs
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Replace, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, Replace, TargetView, Text, rule
 
 # The commands of setuptools that colcon runs: what they call the folder of programs, and for which build.
 _OPTIONS = {"install": "install_scripts", "develop": "script_dir"}

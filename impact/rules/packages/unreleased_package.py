@@ -24,48 +24,41 @@ Not reported
     on the target, and packages with a known successor (renamed-package and removed-package say it).
 """
 
-from ...model.view import TargetView
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "bring its source into the workspace, or put a condition on the dependency"
 
 
 @rule(
-    scope="target",
     texts={
         "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
         "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
     },
 )
-def unreleased_package(view: TargetView):
+def unreleased_package(view: TargetView, package: Package):
     target = view.target
     beside = view.underlaid or view.workspace.outside.lists_repositories
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
-    for package in view:
-        seen = set()
-        for dependency in package.manifest.dependencies:
-            name = dependency.name
-            if name in seen or name in gone or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-                continue
-            if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
-                continue
-            if not target.ever_released(name) or view.private(name) or view.successor(name):
-                continue
-            if view.unknown_contents.is_of_submodule(name):
-                continue
-            if dependency.condition and not view.active_manifest(dependency.condition):
-                continue
-            seen.add(name)
-            used = any(
-                need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
-                for need in view.needs(package)
-            )
-            last = view.last_distro(name) or ""
-            yield Diagnostic(
-                view.manifest_place(package, dependency),
-                name,
-                package.name,
-                {"distro": target.distro, "last": last},
-                kind="later" if last == target.distro else "never",
-                doubts=() if used and not beside else (Doubt.INCOMPLETE,),
-            )
+    seen = set()
+    for dependency in view.dependencies(package):
+        name = dependency.name
+        if name in seen or name in gone or view.available(name):
+            continue
+        if not target.ever_released(name) or view.private(name) or view.successor(name):
+            continue
+        if view.unknown_contents.is_of_submodule(name):
+            continue
+        seen.add(name)
+        used = any(
+            need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
+            for need in view.needs(package)
+        )
+        last = target.last_distro(name)
+        yield Diagnostic(
+            view.manifest_place(package, dependency),
+            name,
+            package.name,
+            {"distro": target.distro, "last": last},
+            kind="later" if last == target.distro else "never",
+            doubts=() if used and not beside else (Doubt.INCOMPLETE,),
+        )

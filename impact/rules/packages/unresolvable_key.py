@@ -30,16 +30,12 @@ Not reported
 
 import posixpath
 import re
-from bisect import bisect_left
 from collections.abc import Iterator
-from functools import lru_cache
 
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.target import Resolution
-from ..rule import Diagnostic, Doubt, Remove, Replace, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, Remove, Replace, TargetView, Text, rule
 from .used_names import list_used_names, shows_uses, stands_in_cmake
 
 _HELP = "declare a key that exists on the target, or put a condition on the dependency"
@@ -80,13 +76,9 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
 def unresolvable_key(view: TargetView, package: Package):
     target = view.target
     seen = set()
-    for dependency in package.manifest.dependencies:
+    for dependency in view.dependencies(package):
         name = dependency.name
-        if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
-            continue
-        if name in view.workspace.packages or target.version(name) is not None:
-            continue
-        if dependency.condition and not view.active_manifest(dependency.condition):
+        if name in seen or name in view.workspace.packages or target.version(name) is not None:
             continue
         seen.add(name)
         if view.private(name) or view.unknown_contents.is_of_submodule(name):
@@ -177,10 +169,7 @@ def _parts_of(view: TargetView, name: str) -> list[str]:
     that."""
     if len(name) < 4:
         return []
-    names, start = _in_order(view.target.released_names()), name + "_"
-    first = bisect_left(names, start)
-    # `_` is followed by a backquote.
-    alike = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
+    alike = [n for n in sorted(view.target.released_names()) if n.startswith(f"{name}_") and view.available(n)]
     homes = {n: _plain_repository(view, n) for n in alike}
     found = [n for n in alike if homes[n] == name] if len(set(homes.values())) > 1 else alike
     return found if len(found) > 1 else []
@@ -192,14 +181,10 @@ def _plain_repository(view: TargetView, package: str) -> str:
     return re.sub(r"[-_]*(?:ros)?\d?\Z", "", repository[0]).replace("-", "_") if repository is not None else ""
 
 
-@lru_cache(maxsize=16)
-def _in_order(names: frozenset[str]) -> list[str]:
-    return sorted(names)
-
-
 def _fix(view: TargetView, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     """Writes the name that was surely meant, or takes the wrong one out where that is declared beside it."""
-    if not view.available(guess) or not _slip(name, guess):
+    # A digit tells versions apart.
+    if _plain(name) != _plain(guess) and not (len(name) > 5 and is_slip(name, guess)):
         return ()
     path = package.digest.manifest_path
     declared = view.declared(package)
@@ -207,13 +192,6 @@ def _fix(view: TargetView, package, name: str, guess: str) -> tuple[Replace | Re
         return (Remove(path, name),) if declared[name] <= declared[guess] else ()
     places = dict.fromkeys((d.line, d.column) for d in package.manifest.dependencies if d.name == name)
     return tuple(Replace(path, line, column, name, guess) for line, column in places)
-
-
-def _slip(name: str, guess: str) -> bool:
-    """True when only case, separators or one letter of a longer name part the two; a digit tells versions."""
-    if _plain(name) == _plain(guess):
-        return True
-    return len(name) > 5 and is_slip(name, guess)
 
 
 def _plain(name: str) -> str:

@@ -26,10 +26,8 @@ import re
 from functools import lru_cache
 
 from ...model.cmake.names import MODULES
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.library import variables
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
 # Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what

@@ -20,9 +20,7 @@ Not reported
     Metapackages, build tools, message runtimes, `*_vendor` packages, dependencies of packages with unresolved CMake.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .used_names import list_used_names, shows_uses
 
 # How names of packages begin or end that are used by what is not read: build tools, programs that people start, and
@@ -71,5 +69,4 @@ def unused_dependency(view: TargetView, package: Package):
             continue
         if view.debian(name) & debian or (view.target.version(name) is None and name not in view.workspace.packages):
             continue
-        place = next(d for d in package.manifest.dependencies if d.name == name)
-        yield Diagnostic(view.manifest_place(package, place), name, package.name)
+        yield Diagnostic(view.manifest_place(package, name), name, package.name)

@@ -1,7 +1,6 @@
 """What a package uses by name, as the rules on what it declares in vain ask for it."""
 
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ..vocabulary import Package, TargetView
 
 
 def shows_uses(package: Package) -> bool:

@@ -23,9 +23,7 @@ Not reported
     What another declared dependency brings as the right kind.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .clean_machine import doubts_of_chance
 from .dependency_kinds import WrongKind, fix_kind, list_wrong_kinds
 

@@ -34,10 +34,8 @@ Not reported
 from ...model.cmake.build import for_tests
 from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.providers.message_headers import type_in
-from ..rule import Diagnostic, Doubt, Insert, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, Together, rule
 
 _LOST = "`{name}` is used without `<{subject}>`, "
 

@@ -22,12 +22,10 @@ Not reported
     versions apart, such as if(COMMAND ...), and find modules whose library installs a configuration of its own.
 """
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.version import at_least, compare
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(
@@ -50,24 +48,15 @@ def cmake_version(view: TargetView, package: Package):
     cmake = view.target.library("cmake")
     if not cmake:
         return
-    newer = yield from _compare_minimum(package, cmake)
-    if not newer:
-        yield from _list_features(view, package, cmake)
-
-
-def _compare_minimum(package: Package, cmake: str) -> Generator[Diagnostic, None, bool]:
-    """Reports a version that does not fit; returns True where it is newer than the target's."""
-    if package.build.minimum is None:
-        return False
-    text, at = package.build.minimum
+    text, at = package.build.minimum or ("", None)
     low, _, high = text.partition("...")
-    if not low[:1].isdigit():
-        return False
-    if compare(low, cmake) > 0:
-        yield Diagnostic(at, low, package.name, {"version": cmake}, kind="newer")
-    elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
-        yield Diagnostic(at, low, package.name, {"version": cmake}, kind="older")
-    return compare(low, cmake) > 0
+    data = {"version": cmake}
+    if low[:1].isdigit() and compare(low, cmake) > 0:
+        yield Diagnostic(at, low, package.name, data, kind="newer")
+        return
+    if low[:1].isdigit() and at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
+        yield Diagnostic(at, low, package.name, data, kind="older")
+    yield from _list_features(view, package, cmake)
 
 
 def _list_features(view: TargetView, package: Package, cmake: str) -> Iterator[Diagnostic]:

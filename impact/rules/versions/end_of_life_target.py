@@ -7,9 +7,7 @@ Why it matters
     Faults of the distro are no longer fixed, and packages may be removed from its archives.
 """
 
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 
 @rule(

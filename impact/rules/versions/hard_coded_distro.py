@@ -28,13 +28,11 @@ import re
 from collections.abc import Iterator
 
 from ...facts.distros import DistroFile
-from ...model.cmake.build import At
 from ...model.package import role_of_folder
-from ...model.view import TargetView
 from ...targets.changes import DISTROS
 from ...targets.distro.known import known_distros
 from ...tree.paths import is_vendored
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, doubts_of_place, rule
 
 
 @rule(

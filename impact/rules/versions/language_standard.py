@@ -25,11 +25,10 @@ Not reported
 """
 
 from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhere
-from ...model.view import TargetView
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, TargetView, Text, rule
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
 _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"

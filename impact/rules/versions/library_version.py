@@ -21,10 +21,9 @@ Not reported
     Requests beside another one for the same library that the platform satisfies; libraries whose version is not known.
 """
 
-from ...model.view import TargetView
-from ...model.workspace import Package
+from ...model.cmake.build import FoundPackage
 from ...targets.providers.library import satisfies
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
 @rule(
@@ -35,30 +34,23 @@ from ..rule import Diagnostic, Doubt, Text, rule
 )
 def library_version(view: TargetView, package: Package):
     for found in package.build.found:
-        if not found.version or not view.active(found.conditions) or found.name in view.workspace.packages:
-            continue
-        answer = satisfies(view.target, found.name, found.version, found.exact)
-        if answer is None or answer.holds:
+        version = _find_refused(view, found)
+        if not version or not view.active(found.conditions) or found.name in view.workspace.packages:
             continue
         # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
         others = [f for f in package.build.found if f.name == found.name and f is not found]
-        if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
+        if any(not _find_refused(view, other) or other.quiet for other in others) or found.quiet:
             continue
-        yield Diagnostic(
-            found.at,
-            found.name,
-            package.name,
-            {"version": answer.version, "requested": found.version},
-            doubts=(
-                found.required or Doubt.DISPENSABLE,
-                view.certain(found.conditions) or Doubt.CONDITIONAL,
-                not view.unknown_contents.is_likely(package, found.name) or Doubt.INCOMPLETE,
-            ),
+        data = {"version": version, "requested": found.version}
+        doubts = (
+            found.required or Doubt.DISPENSABLE,
+            view.certain(found.conditions) or Doubt.CONDITIONAL,
+            not view.unknown_contents.is_likely(package, found.name) or Doubt.INCOMPLETE,
         )
+        yield Diagnostic(found.at, found.name, package.name, data, doubts=doubts)
 
 
-def _holds(view: TargetView, found) -> bool:
-    if not found.version:
-        return True
-    answer = satisfies(view.target, found.name, found.version, found.exact)
-    return answer is None or answer.holds
+def _find_refused(view: TargetView, found: FoundPackage) -> str:
+    """The version of a library that the target has, where it is not what is asked for."""
+    answer = satisfies(view.target, found.name, found.version, found.exact) if found.version else None
+    return "" if answer is None or answer.holds else answer.version

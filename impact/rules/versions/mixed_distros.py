@@ -29,12 +29,10 @@ from collections.abc import Iterator
 from functools import cache
 
 from ...facts.distros import ContainerPart, DistroUse
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.resolve import parse_image
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(

@@ -26,11 +26,9 @@ import sys
 from collections.abc import Iterator
 
 from ...facts.python.source import NO_PYTHON
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
-from ..rule import Diagnostic, Doubt, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
 
 
 @rule(

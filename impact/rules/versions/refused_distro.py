@@ -24,9 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(

@@ -24,12 +24,10 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.view import TargetView
-from ...model.workspace import Package
 from ...targets.distro.distro import DistroTarget
 from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
 from ..python_files import Refused, report_refused
-from ..rule import Doubt, Text, rule
+from ..vocabulary import Doubt, Package, TargetView, Text, rule
 
 
 @rule(

@@ -37,9 +37,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ....edges.console import counted
 from ...model.build_order import build_order
-from ...model.cmake.build import At
-from ...model.view import TargetView
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 if TYPE_CHECKING:
     from ...model.install_space import Binary, InstallSpace

@@ -22,20 +22,19 @@ Not reported
     Bounds on packages whose version on the target is not known, and under a condition that does not hold there.
 """
 
-from ...facts.manifest import Dependency
-from ...model.view import TargetView
-from ...model.workspace import Package
-from ...targets.version import compare
-from ..rule import Diagnostic, Doubt, Text, Upcoming, rule
+import operator
 
-_HOLDS = {
-    "version_lt": lambda c: c < 0,
-    "version_lte": lambda c: c <= 0,
-    "version_eq": lambda c: c == 0,
-    "version_gte": lambda c: c >= 0,
-    "version_gt": lambda c: c > 0,
+from ...facts.manifest import Dependency
+from ...targets.version import compare
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, rule
+
+_BOUNDS = {
+    "version_lt": ("<", operator.lt),
+    "version_lte": ("<=", operator.le),
+    "version_eq": ("=", operator.eq),
+    "version_gte": (">=", operator.ge),
+    "version_gt": (">", operator.gt),
 }
-_SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
 
 
 @rule(
@@ -51,10 +50,8 @@ _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte
 )
 def unsatisfied_version(view: TargetView, package: Package):
     seen = set()
-    for dependency in package.manifest.dependencies:
-        if not dependency.bounds or dependency.kind in ("conflict", "replace", "group") or dependency.name in seen:
-            continue
-        if dependency.condition and not view.active_manifest(dependency.condition):
+    for dependency in view.dependencies(package):
+        if not dependency.bounds or dependency.name in seen:
             continue
         here = view.workspace.packages.get(dependency.name)
         version = (
@@ -64,31 +61,29 @@ def unsatisfied_version(view: TargetView, package: Package):
         )
         if not version:
             continue
-        for name, bound in dependency.bounds:
-            if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
-                seen.add(dependency.name)
-                yield Diagnostic(
-                    view.manifest_place(package, dependency),
-                    dependency.name,
-                    package.name,
-                    {"version": version, "bound": f"{_SIGN[name]} {bound}"},
-                    doubts=(Doubt.DISTURBS,) if here else (),
-                )
-                break
-        else:
-            if not here and (later := _find_later(view, package, dependency)) is not None:
-                seen.add(dependency.name)
-                yield later
+        if bound := _find_broken(dependency, version):
+            seen.add(dependency.name)
+            data, doubts = {"version": version, "bound": bound}, (Doubt.DISTURBS,) if here else ()
+            yield Diagnostic(view.manifest_place(package, dependency), dependency.name, package.name, data, "", doubts)
+        elif not here and (later := _find_later(view, package, dependency)) is not None:
+            seen.add(dependency.name)
+            yield later
+
+
+def _find_broken(dependency: Dependency, version: str) -> str:
+    """The first bound that a version does not keep, as it is read; empty where it keeps all."""
+    broken = (f"{_BOUNDS[name][0]} {bound}" for name, bound in dependency.bounds
+              if name in _BOUNDS and not _BOUNDS[name][1](compare(version, bound), 0))  # fmt: skip
+    return next(broken, "")
 
 
 def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
     """The first update of the distro whose version a bound does not allow."""
     for ahead in view.updates:
         version = ahead.target.version(dependency.name) or ""
-        for name, bound in dependency.bounds if version else ():
-            if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
-                data = {"version": version, "bound": f"{_SIGN[name]} {bound}", "horizon": ahead.name}
-                at = view.manifest_place(package, dependency)
-                found = Diagnostic(at, dependency.name, package.name, data, "upcoming")
-                return Upcoming(found, dependency.name, ahead, (at.path, at.line))
+        if version and (bound := _find_broken(dependency, version)):
+            data = {"version": version, "bound": bound, "horizon": ahead.name}
+            at = view.manifest_place(package, dependency)
+            found = Diagnostic(at, dependency.name, package.name, data, "upcoming")
+            return Upcoming(found, dependency.name, ahead, (at.path, at.line))
     return None
