@@ -118,6 +118,7 @@ _AFTER_NUMBERS = b":"
 _VARIABLE = re.compile(r"::(?=\s*([^\W\d]\w*(?:::[^\W\d]\w*)*))\s*\1[ \t]+\w+[ \t]*[;={]")
 _BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:([^\W\d]\w*)([ \t]*))?")
 _TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
+_SIMPLE_NAME = re.compile(r"([^\W\d]\w*)(?:::[^\W\d]\w*)+")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
 _MAIN = re.compile(r"main\s*\(")
@@ -534,6 +535,9 @@ def _names_in(token: bytes) -> tuple[tuple[tuple[int, str, bool], ...], tuple[by
     """The qualified names in a token that has a colon by where they begin, with whether the token begins with the
     colons of one that has no first part; and its bare words."""
     text = token.decode()
+    simple = _SIMPLE_NAME.fullmatch(text)
+    if simple is not None and simple.group(1) not in KEYWORDS:
+        return ((0, sys.intern(text), False),), ()
     bare = [word for word in _WORDS.findall(text) if ":" not in word]
     names: list[tuple[int, str, bool]] = []
     backwards, length = text[::-1], len(text)
