@@ -288,7 +288,8 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
 
 def _needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
     """Parts of words in every file that has a use of a pattern, one of each tuple; arguments of a kind need none."""
-    expressions = (pattern.before, pattern.template or "", pattern.after, *pattern.where.values())
+    file = "" if "#include" in pattern.file + pattern.unless else pattern.file
+    expressions = (pattern.before, pattern.template or "", pattern.after, file, *pattern.where.values())
     found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
     return tuple(dict.fromkeys(part for parts in found for part in parts))
 

@@ -229,7 +229,7 @@ def _condition(keyword: str, text: str) -> Condition:
     return Condition("cpp", text)
 
 
-def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[int, int] | None:
+def _guard(directives: list[Directive], visible: str) -> tuple[int, int] | None:
     """Indices of the #ifndef and #endif of a guard around the whole file, None when there is none."""
     first = next((index for index, directive in enumerate(directives) if directive[2] != "define"), None)
     if first is None or first + 1 >= len(directives):
@@ -300,10 +300,15 @@ class Scan:
     defined: dict[str, None]
     problems: list[Problem]
     ends: list[int]
+    directives: list[Directive]
+
+    def segment(self, offset: int) -> tuple[int, int, tuple[Condition, ...]]:
+        """The stretch around an offset; inside a directive the one that follows."""
+        return self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
 
     def under(self, offset: int) -> tuple[Condition, ...] | None:
         """The conditions around an offset, None inside a directive."""
-        start, _, conditions = self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
+        start, _, conditions = self.segment(offset)
         return conditions if start <= offset else None
 
     @cached_property
@@ -387,7 +392,7 @@ def scan(data: bytes) -> Scan:
 
     visible = _HIDDEN.sub(blank, text)
 
-    directives: list[tuple[int, int, str, str]] = []
+    directives: list[Directive] = []
     for match in _DIRECTIVE.finditer(visible):
         start = match.start()
         line_start = visible.rfind("\n", 0, start) + 1
@@ -427,7 +432,7 @@ def scan(data: bytes) -> Scan:
     if blocks.open:
         problems.append(Problem(text.count("\n") + 1, f"{len(blocks.open)} `#if` without `#endif`"))
     ends = [end for _, end, _ in segments]
-    return Scan(text, visible, place, segments, found, defined, problems, ends)
+    return Scan(text, visible, place, segments, found, defined, problems, ends, directives)
 
 
 def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
@@ -439,15 +444,15 @@ def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[st
             yield match
 
 
-def standing(name: str, text: str) -> Iterator[int]:
-    """Where a name stands as a whole word."""
-    at = text.find(name)
+def standing(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> Iterator[int]:
+    """Where a name stands as a whole word, between two places."""
+    at = text.find(name, begin, stop)
     while at >= 0:
         end = at + len(name)
         after, before = text[end : end + 1], text[at - 1] if at else ""
         if not (after.isalnum() or after == "_" or before.isalnum() or before == "_"):
             yield at
-        at = text.find(name, end)
+        at = text.find(name, end, stop)
 
 
 def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
@@ -616,11 +621,9 @@ def _by_line(item: Problem | Reference) -> int:
 def includes_of(scanned: Scan) -> tuple[Include, ...]:
     """The #include lines of a file, in its order."""
     includes: list[Include] = []
-    begins = [start for start, _, _ in scanned.segments]
     for offset, angled, path in scanned.found:
-        conditions = scanned.segments[bisect_right(begins, offset) - 1][2]
         line, column = scanned.place(offset)
-        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, conditions))
+        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.segment(offset)[2]))
     return tuple(includes)
 
 
