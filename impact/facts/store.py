@@ -21,6 +21,7 @@ import sqlite3
 import stat
 import time
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from typing import Any
 
 import msgspec
@@ -60,12 +61,17 @@ def fact_key(content_id: str, extractor: str) -> bytes:
 def pack(data: bytes) -> bytes:
     """Bytes as they are stored: packed at the fastest level when that is worth it. Called by the workers."""
     if len(data) >= _PACK_FROM:
-        import zstandard  # late: most runs on unchanged files need none
-
-        packed = zstandard.ZstdCompressor(level=1).compress(data)
+        packed = _packer().compress(data)
         if len(packed) < len(data):
             return b"z" + packed
     return b"-" + data
+
+
+@cache
+def _packer() -> Any:
+    import zstandard  # late: most runs on unchanged files need none
+
+    return zstandard.ZstdCompressor(level=1)
 
 
 def unpack(data: bytes) -> bytes:

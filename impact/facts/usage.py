@@ -123,7 +123,6 @@ class UsageTable:
         self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
 
-
     def likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
         """The rows of a word without those whose uses have a word, or a part of one, that a file lacks. vocabulary: the
         words of the file."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any
@@ -84,3 +85,17 @@ def listed_in(node: Node) -> list[Node]:
         if child.kind_id == KIND.comment:
             return [child for child in children if child.kind_id != KIND.comment]
     return children
+
+
+def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
+    """Lines, first and last, of what the grammar did not understand."""
+    found: set[tuple[int, int]] = set()
+    waiting = [root] if root.has_error else []
+    while waiting:
+        node = waiting.pop()
+        # A semicolon after a macro is often missing, and nothing is lost by it.
+        if node.kind_id == KIND.ERROR or (node.is_missing and node.kind_id != KIND.semicolon):
+            found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
+        elif node.has_error:
+            waiting += node.children
+    return found

@@ -602,9 +602,7 @@ def types_of(visible: str, tokens_text: str) -> tuple[str, ...]:
     return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
 
 
-def _matches(
-    pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: str
-) -> Iterator[re.Match[str]]:
+def _matches(pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
     """The matches of an expression, each of which begins with one of some words; these are found first, since a search
     for one word is far faster than that for several."""
     position = 0

@@ -476,9 +476,7 @@ class _Reader:
         internal = around.internal or any(_INTERNAL.match(name) for name in names)
         self.scopes.append(_Scope(prefix, "", prefix, internal, around.deprecated, resume, at))
 
-    def _type(
-        self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]
-    ) -> bool:
+    def _type(self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]) -> bool:
         """Opens a class, or reads an enum; whether there is something to be read inside."""
         scope, at = self.scopes[-1], self.span[1]
         typedef = "typedef" in reading.words
