@@ -22,6 +22,7 @@ import msgspec
 
 from ..edges import files, limits
 from ..edges.limits import limits_stamp
+from ..edges.reach import Reach
 from .cache import cache_folder
 
 _HERE = os.path.dirname(__file__)
@@ -72,27 +73,23 @@ def code_stamp() -> str:
 def keys_of(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict[str, str]:
     """The key of every module. sources: by module, `impact.facts.__init__` for a folder itself. version: gives that of
     a library by the name that is imported."""
-    imports = {module: _imports(module, source, sources) for module, source in sources.items()}
+    tables = [name for name in sources if "/" in name]
+    imports = {module: _imports(module, source, sources, tables) for module, source in sources.items()}
     own = {module: hashlib.sha1(source).hexdigest() for module, source in sources.items()}
     own.update((name, version(name)) for name in set().union(*imports.values()) - sources.keys())
     python = "{}.{}".format(*sys.version_info)
-    keys = {}
-    for module in sorted(sources):
-        reached = {module}
-        waiting = [module]
-        while waiting:
-            for name in imports[waiting.pop()]:
-                if name not in reached:
-                    reached.add(name)
-                    if name in sources:
-                        waiting.append(name)
-        parts = (f"{name} {own[name]}" for name in sorted(reached))
-        keys[module] = _digest((python, *parts))
-    return keys
+    reach = Reach(lambda name: (imports.get(name, ()), ()))
+
+    @cache
+    def key(reached: int) -> str:
+        return _digest((python, *(f"{name} {own[name]}" for name in sorted(reach.names(reached)))))
+
+    return {module: key(reach.masks(module)[0]) for module in sorted(sources)}
 
 
-def _imports(module: str, source: bytes, sources: Mapping[str, bytes]) -> set[str]:
-    """The modules and libraries that a source imports. What cannot be read so may import everything."""
+def _imports(module: str, source: bytes, sources: Mapping[str, bytes], tables: Iterable[str]) -> set[str]:
+    """The modules and libraries that a source imports. What cannot be read so may import everything. tables: those of
+    the sources that are no modules."""
     if b"\0" in source:  # compiled, without its text
         return set(sources)
     found = set()
@@ -112,7 +109,7 @@ def _imports(module: str, source: bytes, sources: Mapping[str, bytes]) -> set[st
             found.add(next((one for one in (inner, f"{inner}.__init__", whole) if one in sources), f"{whole}.__init__"))
     # A table that lies beside the modules is read by whoever names it.
     near = module.rpartition(".")[0] + "/"
-    found.update(name for name in sources if name.startswith(near) and name[len(near) :].encode() in source)
+    found.update(name for name in tables if name.startswith(near) and name[len(near) :].encode() in source)
     found.discard(module)
     return {name for name in found if name in sources or name not in sys.stdlib_module_names}
 

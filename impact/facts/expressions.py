@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Any
 
-if sys.version_info >= (3, 11):
-    from re import _constants as codes  # type: ignore[attr-defined]
-    from re import _parser as parser  # type: ignore[attr-defined]
-else:
-    import sre_constants as codes
-    import sre_parse as parser
+from ...edges.patterns import names as codes
+from ...edges.patterns import parser
 
 # One parsed part of an expression: its code, and what belongs to it.
 _Part = tuple[Any, Any]

@@ -20,8 +20,8 @@ import os
 import sqlite3
 import stat
 import time
-import zlib
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from typing import Any
 
 import msgspec
@@ -31,7 +31,7 @@ from ...edges.files import NOT_REGULAR
 from ...edges.limits import limits
 from ..cache import cache_folder
 
-_SCHEMA_VERSION = 2
+_SCHEMA_VERSION = 3
 _TABLES = ("facts", "memo")
 # used: the day of its last use, since 1970; seal: see _seal()
 _COLUMNS = (
@@ -49,7 +49,7 @@ _RESTARTS = 2
 # SQLite before 3.32 takes at most 999 variables
 _AT_ONCE = 900
 _DAY = 86_400
-# Below this, deflating takes longer than reading the bytes it saves.
+# Below this, packing takes longer than reading the bytes it saves.
 _PACK_FROM = 2_000
 
 
@@ -59,12 +59,19 @@ def fact_key(content_id: str, extractor: str) -> bytes:
 
 
 def pack(data: bytes) -> bytes:
-    """Bytes as they are stored: deflated at the fastest level when that is worth it. Called by the workers."""
+    """Bytes as they are stored: packed at the fastest level when that is worth it. Called by the workers."""
     if len(data) >= _PACK_FROM:
-        packed = zlib.compress(data, 1)
+        packed = _packer().compress(data)
         if len(packed) < len(data):
             return b"z" + packed
     return b"-" + data
+
+
+@cache
+def _packer() -> Any:
+    import zstandard  # late: most runs on unchanged files need none
+
+    return zstandard.ZstdCompressor(level=1)
 
 
 def unpack(data: bytes) -> bytes:
@@ -73,14 +80,15 @@ def unpack(data: bytes) -> bytes:
         return data[1:]
     if data[:1] != b"z":
         raise ValueError("not packed by this version")
-    inflater = zlib.decompressobj()
+    import zstandard
+
+    frame = memoryview(data)[1:]
     try:
-        whole = inflater.decompress(memoryview(data)[1:], limits().row)
-    except zlib.error as error:
+        if not 0 <= zstandard.frame_content_size(frame) <= limits().row:
+            raise ValueError("of no known size, or larger than a row may be")
+        return zstandard.ZstdDecompressor().decompress(frame)
+    except zstandard.ZstdError as error:
         raise ValueError(str(error)) from None
-    if not inflater.eof:
-        raise ValueError("cut off, or larger than a row may be")
-    return whole
 
 
 def encodable(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]]:

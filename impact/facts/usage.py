@@ -86,7 +86,6 @@ _NOT_A_TYPE = frozenset((
     "return", "else", "throw", "new", "co_return", "co_await", "co_yield", "case", "and", "or", "not", "do", "in", "if",
     "elif", "while",
 ))  # fmt: skip
-_KEYWORD_TEXT = " ".join(sorted(KEYWORDS))
 _KINDS = frozenset(("<float>", "<text>", "<string>"))
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
@@ -96,7 +95,6 @@ _CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
 _PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
-_BEHIND_ARGUMENTS = re.compile(r"::(?<=[>)]::)\s*\w+\s*::")
 _OPENED = re.compile(rb"\s*\(")
 _AHEAD_OF_DECLARED = frozenset((b"", b" ", b"\t", b"\n", b":"))
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
@@ -124,7 +122,6 @@ class UsageTable:
         self.keywords = sorted(KEYWORDS.intersection(patterns))
         self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
-
 
     def likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
         """The rows of a word without those whose uses have a word, or a part of one, that a file lacks. vocabulary: the
@@ -159,11 +156,9 @@ def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[Wat
     """The uses in a C++ file that a table describes, see uses_of(), and those functions that such uses call and the
     file declares itself, or defines as macros. Never raises."""
     patterns = table.patterns
-    text = scan(data).visible
+    vocabulary = scan(data).tokens_text
     spoken = {*facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
-    # What follows the arguments of a template is among neither words nor names when it is qualified itself.
-    vocabulary = f"{_KEYWORD_TEXT} {' '.join(spoken)}" if _BEHIND_ARGUMENTS.search(text) is None else text
-    spoken.update([word for word in table.keywords if word in text])
+    spoken.update([word for word in table.keywords if word in vocabulary])
     uses = list(table.qualified_uses(facts))
     functions = []
     for word in sorted(patterns.keys() & spoken):
@@ -203,7 +198,10 @@ def declares(data: bytes, function: str) -> bool:
         # Behind a blank a type may stand, behind colons a scope, and the start of a line tells nothing.
         if data[at - 1 : at] in _AHEAD_OF_DECLARED and _OPENED.match(data, end) is not None:
             start = _line_start(data, at)
-            ahead = _SCOPES.sub(b"", data[start:at])
+            ahead = data[start:at]
+            if ahead.isspace():
+                continue
+            ahead = _SCOPES.sub(b"", ahead)
             if not ahead and start:
                 ahead = data[_line_start(data, start - 1) : start - 1].rstrip() + b" "
             found = _TYPE_AHEAD.search(ahead)
@@ -289,7 +287,8 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
 
 def _needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
     """Parts of words in every file that has a use of a pattern, one of each tuple; arguments of a kind need none."""
-    expressions = (pattern.before, pattern.template or "", pattern.after, *pattern.where.values())
+    file = "" if "#include" in pattern.file + pattern.unless else pattern.file
+    expressions = (pattern.before, pattern.template or "", pattern.after, file, *pattern.where.values())
     found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
     return tuple(dict.fromkeys(part for parts in found for part in parts))
 

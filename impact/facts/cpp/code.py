@@ -16,7 +16,7 @@ from tree_sitter import Node
 from ....edges.memory import cached_method
 from ..condition import Condition
 from .flow_clean import cleaned, cleaned_further
-from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, kind, kinds, listed_in
+from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, errors, kind, kinds, listed_in
 from .lexical import Scan, beginning_lines, scan, standing, text_of
 from .names import joined, without_templates
 from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
@@ -78,7 +78,7 @@ class CppCode:
             further = cleaned_further(self._data, source)
             if further.source != source.source:
                 again = PARSER.parse(further.source).root_node
-                if _errors(again) < _errors(root):
+                if len(errors(again, further.starts)) < len(errors(root, source.starts)):
                     source, root = further, again
         return source.text, source.source.decode(), root
 
@@ -693,18 +693,6 @@ _FAR = 120
 @lru_cache(maxsize=4096)
 def _member_pattern(word: str) -> re.Pattern[bytes]:
     return re.compile(rb"(?:\.|->|::)\s*" + re.escape(word.encode()) + rb"(?!\w|\s*\(|\s*::)")
-
-
-def _errors(root: Node) -> int:
-    """How many places of a tree were not understood."""
-    found, waiting = 0, [root] if root.has_error else []
-    while waiting:
-        node = waiting.pop()
-        if node.kind_id == KIND.ERROR:
-            found += 1
-        elif node.has_error:
-            waiting += node.children
-    return found
 
 
 class _Declarations:

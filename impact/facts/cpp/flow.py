@@ -17,7 +17,18 @@ from tree_sitter import Node
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
 from .flow_clean import Cleaned, cleaned, cleaned_further
-from .flow_grammar import DECLARATORS, DECLARED_TYPES, KIND, NAMES, PARSER, TYPES, grammatical, listed_in, node_readers
+from .flow_grammar import (
+    DECLARATORS,
+    DECLARED_TYPES,
+    KIND,
+    NAMES,
+    PARSER,
+    TYPES,
+    errors,
+    grammatical,
+    listed_in,
+    node_readers,
+)
 from .flow_statements import CppStatements
 from .flow_values import READ, bare, flat
 from .lexical import EXPORTING, beginning_lines, exports_of, scan
@@ -60,20 +71,6 @@ def read(source: Cleaned, root: Node) -> _File:
     except RecursionError:
         reader.problems.append(Problem(1, "nested too deeply to be read in full"))
     return reader
-
-
-def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
-    """Lines, first and last, of what the grammar did not understand."""
-    found: set[tuple[int, int]] = set()
-    waiting = [root] if root.has_error else []
-    while waiting:
-        node = waiting.pop()
-        # A semicolon after a macro is often missing, and nothing is lost by it.
-        if node.kind_id == KIND.ERROR or (node.is_missing and node.kind_id != KIND.semicolon):
-            found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
-        elif node.has_error:
-            waiting += node.children
-    return found
 
 
 class _File(CppStatements):

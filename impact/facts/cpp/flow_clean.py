@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
@@ -234,7 +234,6 @@ _FURTHER = (
     (("slots", "Q_SLOTS"), _SLOTS, _blank_group),
     (("signals", "Q_SIGNALS"), _SIGNALS, _as_public),
 )
-_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b((?:[^\n]*\\\n)*[^\n]*)", re.MULTILINE)
 _BRACES = re.compile(r"[{}()]")
 _STARTS_INSIDE = re.compile(r"\s*(?:else\b|&&|\|\||<<|[,.?)+*/=]|:(?!:)|->|-)")
 _ENDS_INSIDE = re.compile(r"(?:\belse|&&|\|\||<<|[,(=?+*/]|-)\s*\Z")
@@ -248,13 +247,14 @@ def _flattened(
     a Region, the others are left out."""
     if "#if" not in source and "# if" not in source:
         return source, (), ()
-    visible = scan(data).visible
+    scanned = scan(data)
+    visible = scanned.visible
     if len(visible) != len(text):
         return source, (), ()
     blank: list[tuple[int, int]] = []
     regions: list[Region] = []
     hidden: list[tuple[int, int]] = []
-    for directives in conditional_blocks(_directives(visible, text)):
+    for directives in conditional_blocks(scanned.directives):
         if not _cuts(visible, directives):
             continue
         first_start, first_end, first_word, condition = directives[0]
@@ -270,12 +270,6 @@ def _flattened(
         if len(directives) > 2:
             hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
     return blanked(source, sorted(blank)), tuple(sorted(regions)), tuple(hidden)
-
-
-def _directives(visible: str, text: str) -> Iterator[Directive]:
-    for match in _DIRECTIVE.finditer(visible):
-        condition = text[match.start(2) : match.end(2)].replace("\\\n", " ").split("//")[0]
-        yield match.start(), match.end(), match[1], " ".join(condition.split())
 
 
 def _cuts(visible: str, directives: list[Directive]) -> bool:

@@ -8,7 +8,8 @@ import re
 import sys
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from itertools import accumulate, count
 from operator import add
 from typing import NamedTuple
@@ -84,7 +85,7 @@ KEYWORDS = frozenset(_KEYWORD_TEXT.split())
 # Every alternative starts with a literal, so that the search skips plain code at the speed of a character set.
 _HIDDEN = re.compile(
     r"""
-      //[^\n]*(?:(?<=\\)\n[^\n]*)*                                        # comment, continued by a backslash
+      //[^\n]*(?:(?:(?<=\\)\n|\n[ ]*//)[^\n]*)*                           # comments; a backslash continues one
     | /\*[^*]*(?:\*(?!/)[^*]*)*(?P<end>\*/)?                              # comment; no end is a problem
     | "(?<=R")(?:(?<![A-Za-z0-9_]R")|(?<=[uUL8]R"))(?P<raw>[^\s()\\"]{0,16})\((?s:.*?)(?:\)(?P=raw)"|\Z)
     | "(?:[^"\\\n]+|\\[\s\S])*"?
@@ -112,10 +113,12 @@ _NO_TOKEN = re.compile(r"[^\w\x00-\x7f]")
 _IN_TOKEN = re.compile(r"[\w:\x1f]")
 _ONLY_TOKENS = bytes(at if at > 127 or chr(at).isalnum() or chr(at) in "_:\x1f" else 32 for at in range(256))
 _KEYWORD_BYTES = frozenset(word.encode() for word in KEYWORDS)
-_DIGITS = frozenset("0123456789")
-_VARIABLE = re.compile(r"::\s*([^\W\d]\w*(?:::[^\W\d]\w*)*)[ \t]+\w+[ \t]*[;={]")
+_AFTER_NUMBERS = b":"
+# What a lookahead has matched is not tried again in shorter forms.
+_VARIABLE = re.compile(r"::(?=\s*([^\W\d]\w*(?:::[^\W\d]\w*)*))\s*\1[ \t]+\w+[ \t]*[;={]")
 _BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:([^\W\d]\w*)([ \t]*))?")
 _TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
+_SIMPLE_NAME = re.compile(r"([^\W\d]\w*)(?:::[^\W\d]\w*)+")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
 _MAIN = re.compile(r"main\s*\(")
@@ -126,6 +129,8 @@ _EXPORT = re.compile(
     r"|GZ_REGISTER_\w+_PLUGIN|(?:GZ|IGNITION)_ADD_PLUGIN)\s*\((?P<arguments>[^;{}]{0,500}?)\)"
 )
 EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
+_EXPORTING = (*EXPORTING, "GZ_REGISTER_", "GZ_ADD_PLUGIN", "IGNITION_ADD_PLUGIN")
+_BEGIN_EXPORTS = tuple(map(re.compile, _EXPORTING))
 _PACKAGE_URL = re.compile(r'"package://([A-Za-z]\w*)(?:/([^"\n]*))?"')
 _PACKAGE_CALL = re.compile(
     r"(?:package::getPath|get_package_share_directory|get_package_prefix|get_package_share_path)\s*\(\s*(\")"
@@ -224,7 +229,7 @@ def _condition(keyword: str, text: str) -> Condition:
     return Condition("cpp", text)
 
 
-def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[int, int] | None:
+def _guard(directives: list[Directive], visible: str) -> tuple[int, int] | None:
     """Indices of the #ifndef and #endif of a guard around the whole file, None when there is none."""
     first = next((index for index, directive in enumerate(directives) if directive[2] != "define"), None)
     if first is None or first + 1 >= len(directives):
@@ -253,7 +258,38 @@ def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[i
     return None
 
 
-class Scan(NamedTuple):
+class _Piece(NamedTuple):
+    """Where a piece of a file begins, its conditions, its text, the same as bytes with blanks for what belongs to no
+    token, and the tokens: words, a qualified name as one."""
+
+    start: int
+    conditions: tuple[Condition, ...]
+    text: str
+    apart: bytes
+    tokens: set[bytes]
+
+    def find(self, token: bytes) -> int:
+        """Where a token first stands by itself, -1 without such a place."""
+        at = self.apart.find(b" " + token + b" ")
+        if at > 0 and not self.text.isascii():
+            return len(self.apart[1 : at + 1].decode())
+        return at
+
+    def find_beginning(self, token: str) -> int:
+        """The same for one that begins with colons, which belong to nothing before them. They do in
+        `vector<int>::iterator`."""
+        at = self.text.find(token)
+        while at >= 0:
+            if not _IN_TOKEN.match(self.text, at + len(token)):
+                before = self.text[at - 1 : at]
+                if not _IN_TOKEN.match(before) and before not in (">", ")"):
+                    break
+            at = self.text.find(token, at + 1)
+        return at
+
+
+@dataclass(eq=False)
+class Scan:
     """A file with comments, literals and includes blanked out, cut into stretches that stand under equal conditions."""
 
     text: str
@@ -264,11 +300,64 @@ class Scan(NamedTuple):
     defined: dict[str, None]
     problems: list[Problem]
     ends: list[int]
+    directives: list[Directive]
+
+    def segment(self, offset: int) -> tuple[int, int, tuple[Condition, ...]]:
+        """The stretch around an offset; inside a directive the one that follows."""
+        return self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
 
     def under(self, offset: int) -> tuple[Condition, ...] | None:
         """The conditions around an offset, None inside a directive."""
-        start, _, conditions = self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
+        start, _, conditions = self.segment(offset)
         return conditions if start <= offset else None
+
+    @cached_property
+    def pieces(self) -> list[_Piece]:
+        """The stretches; long ones are in several pieces, since each name is looked for from the start."""
+        tied = _tie(self.visible)
+        pieces: list[_Piece] = []
+        for start, end, conditions in self.segments:
+            while start < end:
+                gap = _NOT_IN_TOKEN.search(tied, start + _LONGEST_PIECE, end) if end - start > _LONGEST_PIECE else None
+                stop = gap.start() if gap is not None else end
+                text = tied[start:stop]
+                apart = f" {text} ".encode().translate(_ONLY_TOKENS)
+                pieces.append(_Piece(start, conditions, text, apart, set(apart.split())))
+                start = stop
+        return pieces
+
+    @cached_property
+    def tokens(self) -> set[bytes]:
+        """All tokens outside of conditions of directives."""
+        first, *others = [piece.tokens for piece in self.pieces] or [set[bytes]()]
+        return first.union(*others) if others else first
+
+    @cached_property
+    def tokens_text(self) -> str:
+        """The tokens: what is in none of them need not be looked for in the text, which is far longer."""
+        return b" ".join(self.tokens).decode()
+
+
+def _placing(text: str) -> Callable[[int], tuple[int, int]]:
+    """Gives line and column of offsets, from 1. Each is counted from the one before, which is most often near."""
+    line, begin, last = 1, 0, 0
+
+    def place(offset: int) -> tuple[int, int]:
+        nonlocal line, begin, last
+        if offset >= last:
+            passed = text.count("\n", last, offset)
+            if passed:
+                line += passed
+                begin = text.rfind("\n", last, offset) + 1
+        else:
+            passed = text.count("\n", offset, last)
+            if passed:
+                line -= passed
+                begin = text.rfind("\n", 0, offset) + 1
+        last = offset
+        return line, offset - begin + 1
+
+    return place
 
 
 @lru_cache(maxsize=4)
@@ -276,12 +365,7 @@ def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
     text = text_of(data)
     problems: list[Problem] = []
-    starts = line_starts(text)
-
-    def place(offset: int) -> tuple[int, int]:
-        line = bisect_right(starts, offset)
-        return line, offset - starts[line - 1] + 1
-
+    place = _placing(text)
     found: list[tuple[int, bool, str]] = []
 
     def blank(match: re.Match[str]) -> str:
@@ -308,7 +392,7 @@ def scan(data: bytes) -> Scan:
 
     visible = _HIDDEN.sub(blank, text)
 
-    directives: list[tuple[int, int, str, str]] = []
+    directives: list[Directive] = []
     for match in _DIRECTIVE.finditer(visible):
         start = match.start()
         line_start = visible.rfind("\n", 0, start) + 1
@@ -346,9 +430,9 @@ def scan(data: bytes) -> Scan:
         conditions = blocks.conditions()
     segments.append((position, len(visible), conditions))
     if blocks.open:
-        problems.append(Problem(len(starts) - 1, f"{len(blocks.open)} `#if` without `#endif`"))
+        problems.append(Problem(text.count("\n") + 1, f"{len(blocks.open)} `#if` without `#endif`"))
     ends = [end for _, end, _ in segments]
-    return Scan(text, visible, place, segments, found, defined, problems, ends)
+    return Scan(text, visible, place, segments, found, defined, problems, ends, directives)
 
 
 def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
@@ -360,15 +444,15 @@ def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[st
             yield match
 
 
-def standing(name: str, text: str) -> Iterator[int]:
-    """Where a name stands as a whole word."""
-    at = text.find(name)
+def standing(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> Iterator[int]:
+    """Where a name stands as a whole word, between two places."""
+    at = text.find(name, begin, stop)
     while at >= 0:
         end = at + len(name)
         after, before = text[end : end + 1], text[at - 1] if at else ""
         if not (after.isalnum() or after == "_" or before.isalnum() or before == "_"):
             yield at
-        at = text.find(name, end)
+        at = text.find(name, end, stop)
 
 
 def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
@@ -386,48 +470,56 @@ def extract(data: bytes) -> CppFile:
     Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
     """
     scanned = scan(data)
-    text, visible, place = scanned.text, scanned.visible, scanned.place
-    tied = _tie(visible)
+    visible, place, tokens_text = scanned.visible, scanned.place, scanned.tokens_text
     words: set[bytes] = set()
+    with_colons: set[bytes] = set()
     qualified: list[NameUseInFile] = []
     seen: dict[tuple[Condition, ...], set[str]] = {}
-    for start, end, conditions in _pieces(scanned, tied):
-        piece = tied[start:end]
-        tokens = set(piece.encode().translate(_ONLY_TOKENS).split())
-        joined = [token for token in tokens if b":" in token]
-        words |= tokens
-        known = seen.setdefault(conditions, set())
+    for piece in scanned.pieces:
+        joined = [token for token in piece.tokens if b":" in token]
+        with_colons.update(joined)
+        known = seen.setdefault(piece.conditions, set())
         found: list[tuple[int, str]] = []
         for token in joined:
-            spelt, names, bare = _names_in(token)
-            words.discard(token)
+            names, bare = _names_in(token)
             words.update(bare)
             for offset, name, begins in names:
                 if name not in known:
-                    at = _find_token(piece, spelt, begins)
+                    at = piece.find_beginning(token.decode()) if begins else piece.find(token)
                     if at >= 0:
-                        found.append((start + at + offset, name))
+                        found.append((piece.start + at + offset, name))
         found.sort()
         for at, name in found:
             if name not in known:
                 known.add(name)
-                qualified.append(NameUseInFile(name, *place(at), conditions))
+                qualified.append(NameUseInFile(name, *place(at), piece.conditions))
 
-    plain = b" ".join(words - _KEYWORD_BYTES).decode().split(" ")
+    words |= scanned.tokens
+    words -= with_colons
+    words -= _KEYWORD_BYTES
+    long_words = sorted([word for word in words if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)])
     return CppFile(
         includes=includes_of(scanned),
         qualified=tuple(qualified),
-        words=" ".join(sorted([word for word in plain if len(word) > 3 and word[0] not in _DIGITS])),
+        words=b" ".join(long_words[bisect_right(long_words, _AFTER_NUMBERS) :]).decode(),
         defined=tuple(scanned.defined),
-        using=tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible))),
+        using=_using(visible) if "using" in tokens_text else (),
         problems=tuple(sorted(scanned.problems, key=_by_line)),
-        exports=exports_of(visible),
-        references=_references(text, visible, place),
-        main=any(
-            _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
-        ),
-        types=types_of(visible),
+        exports=exports_of(visible) if any(word in tokens_text for word in _EXPORTING) else (),
+        references=_references(scanned.text, visible, place),
+        main="main" in tokens_text and _has_main(visible),
+        types=types_of(visible, tokens_text) if "namespace" in tokens_text else (),
         variables=_variables(visible),
+    )
+
+
+def _using(visible: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible)))
+
+
+def _has_main(visible: str) -> bool:
+    return any(
+        _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
     )
 
 
@@ -443,20 +535,14 @@ def _tied(match: re.Match[str]) -> str:
     return "::" + _TIE * (len(match.group()) - 2)
 
 
-def _pieces(scanned: Scan, tied: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
-    """The segments; long ones in pieces, since each name is looked for from the start."""
-    for start, end, conditions in scanned.segments:
-        while end - start > _LONGEST_PIECE and (gap := _NOT_IN_TOKEN.search(tied, start + _LONGEST_PIECE, end)):
-            yield start, gap.start(), conditions
-            start = gap.start()
-        yield start, end, conditions
-
-
 @lru_cache(maxsize=20_000)
-def _names_in(token: bytes) -> tuple[str, tuple[tuple[int, str, bool], ...], tuple[bytes, ...]]:
-    """A token that has a colon as text; its qualified names by where they begin, with whether the token begins with the
+def _names_in(token: bytes) -> tuple[tuple[tuple[int, str, bool], ...], tuple[bytes, ...]]:
+    """The qualified names in a token that has a colon by where they begin, with whether the token begins with the
     colons of one that has no first part; and its bare words."""
     text = token.decode()
+    simple = _SIMPLE_NAME.fullmatch(text)
+    if simple is not None and simple.group(1) not in KEYWORDS:
+        return ((0, sys.intern(text), False),), ()
     bare = [word for word in _WORDS.findall(text) if ":" not in word]
     names: list[tuple[int, str, bool]] = []
     backwards, length = text[::-1], len(text)
@@ -474,20 +560,7 @@ def _names_in(token: bytes) -> tuple[str, tuple[tuple[int, str, bool], ...], tup
                 bare.append(name)
         if "::" in name:
             names.append((name_at, sys.intern(_SPACE.sub("", name)), not at))
-    return text, tuple(names), tuple(word.encode() for word in bare)
-
-
-def _find_token(text: str, token: str, begins: bool) -> int:
-    """Where a token first stands by itself, -1 without such a place. begins: with colons that belong to nothing before
-    them, as they do in `vector<int>::iterator`."""
-    at = text.find(token)
-    while at >= 0:
-        if not _IN_TOKEN.match(text, at + len(token)):
-            before = text[at - 1 : at]
-            if not _IN_TOKEN.match(before) and not (begins and before in (">", ")")):
-                break
-        at = text.find(token, at + 1)
-    return at
+    return tuple(names), tuple(word.encode() for word in bare)
 
 
 def _variables(visible: str) -> tuple[str, ...]:
@@ -512,23 +585,31 @@ _TYPE = re.compile(
     r"|using\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};)"
 )
 _TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef")
-_BEGIN_TYPES = [re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS]
+_BEGIN_TYPES = {word: re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS}
 _MOST_TYPES = 400
 
 
-def types_of(visible: str) -> tuple[str, ...]:
-    """The types that a file defines, with each of the namespaces that it opens."""
+def types_of(visible: str, tokens_text: str) -> tuple[str, ...]:
+    """The types that a file defines, with each of the namespaces that it opens. tokens_text: all of its words."""
     spaces = dict.fromkeys(_SPACE.sub("", match) for match in _NAMESPACE.findall(visible))
     if not spaces:
         return ()
     names: dict[str, None] = {}
-    position = 0
-    for at in sorted([match.start() for begin in _BEGIN_TYPES for match in begin.finditer(visible)]):
-        if at >= position and (match := _TYPE.match(visible, at)) is not None:
-            position = match.end()
-            names[match.group(match.lastindex or 0)] = None
+    begins = [begin for word, begin in _BEGIN_TYPES.items() if word in tokens_text]
+    for match in _matches(_TYPE, begins, visible):
+        names[match.group(match.lastindex or 0)] = None
     found = (f"{space}::{name}" for space in spaces for name in names)
     return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
+
+
+def _matches(pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
+    """The matches of an expression, each of which begins with one of some words; these are found first, since a search
+    for one word is far faster than that for several."""
+    position = 0
+    for at in sorted([found.start() for begin in begins for found in begin.finditer(text)]):
+        if at >= position and (match := pattern.match(text, at)) is not None:
+            position = match.end()
+            yield match
 
 
 def _by_line(item: Problem | Reference) -> int:
@@ -538,11 +619,9 @@ def _by_line(item: Problem | Reference) -> int:
 def includes_of(scanned: Scan) -> tuple[Include, ...]:
     """The #include lines of a file, in its order."""
     includes: list[Include] = []
-    begins = [start for start, _, _ in scanned.segments]
     for offset, angled, path in scanned.found:
-        conditions = scanned.segments[bisect_right(begins, offset) - 1][2]
         line, column = scanned.place(offset)
-        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, conditions))
+        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.segment(offset)[2]))
     return tuple(includes)
 
 
@@ -550,9 +629,7 @@ def exports_of(visible: str) -> tuple[str, ...]:
     """Classes registered as plugins, those of Gazebo too, or components: the first argument, or the later one of ROS
     1's old macros."""
     exports: dict[str, None] = {}
-    if "_PLUGIN" not in visible and not any(word in visible for word in EXPORTING):
-        return ()
-    for match in _EXPORT.finditer(visible):
+    for match in _matches(_EXPORT, _BEGIN_EXPORTS, visible):
         line_start = visible.rfind("\n", 0, match.start()) + 1
         if visible[line_start : match.start()].lstrip().startswith("#"):
             continue

@@ -13,9 +13,9 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..surface import Entity, HeaderSurface
-from .lexical import Scan, includes_of, scan
+from .lexical import Scan, includes_of, scan, standing
 from .surface_declarations import ClassHead, Declarator, Head, class_head, declared, head_of, without_deprecation
-from .surface_directives import HIDDEN, conditions_at, warning_of, without_directives
+from .surface_directives import HIDDEN, warning_of, without_directives
 from .surface_enums import enumerators
 from .surface_macros import DECLARES, expansion
 from .surface_types import closed, joined, split, tokens_of, type_text
@@ -428,7 +428,7 @@ class _Reader:
         self.entities.append(
             Entity(
                 kind, prefix + name, self.scanned.place(offset)[0], traits=_sorted(traits), access=access,
-                deprecated=deprecated, internal=scope.internal, conditions=conditions_at(self.scanned, offset), **more,
+                deprecated=deprecated, internal=scope.internal, conditions=self.scanned.segment(offset)[2], **more,
             )
         )  # fmt: skip
 
@@ -447,14 +447,7 @@ class _Reader:
 
     def _word(self, word: str, start: int, end: int) -> int:
         """Where a word stands by itself; the start when it does not."""
-        code = self.code
-        at = code.find(word, start, end)
-        while at >= 0:
-            behind = code[at + len(word) : at + len(word) + 1]
-            if not (behind.isalnum() or behind == "_") and not (code[at - 1].isalnum() or code[at - 1] == "_"):
-                return at
-            at = code.find(word, at + 1, end)
-        return start
+        return next(standing(word, self.code, start, end), start)
 
     def _lose(self, head: str) -> None:
         self.lost += len(head.strip())
@@ -483,9 +476,7 @@ class _Reader:
         internal = around.internal or any(_INTERNAL.match(name) for name in names)
         self.scopes.append(_Scope(prefix, "", prefix, internal, around.deprecated, resume, at))
 
-    def _type(
-        self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]
-    ) -> bool:
+    def _type(self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]) -> bool:
         """Opens a class, or reads an enum; whether there is something to be read inside."""
         scope, at = self.scopes[-1], self.span[1]
         typedef = "typedef" in reading.words
@@ -538,7 +529,7 @@ class _Reader:
                 Entity(
                     "enumerator", prefix + word, self.scanned.place(offset)[0], scope.prefix + name if name else "",
                     access=self.access if scope.class_name else "", value=value, deprecated=deprecated,
-                    internal=scope.internal, conditions=conditions_at(self.scanned, offset),
+                    internal=scope.internal, conditions=self.scanned.segment(offset)[2],
                 )
             )  # fmt: skip
 

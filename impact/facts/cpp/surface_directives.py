@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterator
 
 from ..condition import Condition
@@ -54,7 +53,7 @@ def _macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: set[s
         if match is None or match[1] in undefined:
             continue
         name = match[1]
-        conditions = conditions_at(scanned, start)
+        conditions = scanned.segment(start)[2]
         if (name, conditions) in seen:
             continue
         parameters = None
@@ -97,14 +96,6 @@ def warning_of(text: str) -> str | None:
         if _GONE.search(message):
             return message
     return None
-
-
-def conditions_at(scanned: Scan, offset: int) -> tuple[Condition, ...]:
-    """The #if conditions around a place."""
-    segments = scanned.segments
-    if len(segments) == 1:
-        return segments[0][2]
-    return segments[min(bisect_right(scanned.ends, offset), len(segments) - 1)][2]
 
 
 def _kept(match: re.Match[str]) -> str:
