@@ -84,7 +84,7 @@ def keys_of(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict
     def key(reached: int) -> str:
         return _digest((python, *(f"{name} {own[name]}" for name in sorted(reach.names(reached)))))
 
-    return {module: key(reach.masks(module)[0]) for module in sorted(sources)}
+    return {module: key(reach.masks((module,))[0]) for module in sorted(sources)}
 
 
 def _imports(module: str, source: bytes, sources: Mapping[str, bytes], tables: Iterable[str]) -> set[str]:
