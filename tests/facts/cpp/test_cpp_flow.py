@@ -218,6 +218,7 @@ def test_noise_is_left_out_and_what_it_is_given_is_not(text, called):
     [
         ("int a = 1, *b = &c;", [("a", "int", "=", "number:1"), ("b", "int*", "=", "function:c")]),
         ("const T & a = m->b;", [("a", "const T&", "=", "name:m.b")]),
+        ("int a = /* seconds */ 1;", [("a", "int", "=", "number:1")]),
         ("ros::NodeHandle n;", [("n", "ros::NodeHandle", "=", "make:ros::NodeHandle")]),
         ('ros::NodeHandle n("~");', [("n", "ros::NodeHandle", "=", "make:ros::NodeHandle(text:~)")]),
         ("ros::Rate r(rate);", [("r", "ros::Rate", "=", "make:ros::Rate(name:rate)")]),

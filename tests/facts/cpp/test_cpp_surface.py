@@ -155,6 +155,11 @@ def test_bases_templates_and_final():
     assert one.traits == ("final",)
 
 
+def test_a_macro_may_stand_for_final():
+    (one,) = offered("class ARM_PUBLIC Arm ARM_FINAL : public Base {};")
+    assert (one.name, one.traits, [base.type for base in one.bases]) == ("Arm", ("final",), ["Base"])
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -172,6 +172,19 @@ def test_images_have_their_camera_info_beside_them():
     assert [publish.topic for publish in found.publishes] == ["/a/out"]
 
 
+def test_the_camera_info_that_image_transport_names_for_an_image():
+    found = graph({"p/a.cpp": """
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "a");
+          ros::NodeHandle n;
+          ros::Publisher p = n.advertise<sensor_msgs::CameraInfo>(
+            image_transport::getCameraInfoTopic("front/image_raw"), 1);
+          ros::spin();
+        }
+    """}, 1)  # fmt: skip
+    assert ends(found, "publisher") == {("p/a", "/front/camera_info", "sensor_msgs/CameraInfo")}
+
+
 def test_filters_get_the_callback_of_their_synchronizer():
     found = graph({"p/a.cpp": """
         class A {
@@ -411,6 +424,7 @@ def test_what_a_handle_from_elsewhere_names_is_not_known():
         ("ros::NodeHandle n; Lamp lamp(n);", "/lit"),
         ('ros::NodeHandle n("~"); Lamp lamp(n);', "/node/lit"),
         ('ros::NodeHandle n("room"); Light lamp(n);', "/room/lit"),
+        ('ros::NodeHandle own("room"); ros::NodeHandle n = own; Lamp lamp(n);', "/room/lit"),
         ('ros::NodeHandle n, own("~"); Lamp lamp(n); Lamp other(own);', ""),  # one of two
         ('std::string where; ros::param::get("where", where); ros::NodeHandle n(where); Lamp lamp(n);', ""),
     ],
