@@ -151,16 +151,18 @@ def test_server_of_ros1():
               <param name="~each" value="e"/> <param name="~p" value="0"/>
               <param name="text" value="5" type="str"/>
               <rosparam file="$(find p)/v.yaml"/>
+              <rosparam file="$(find p)/w.yaml" subst_value="true"/>
               <rosparam ns="in" subst_value="true">{a: $(arg v), $(arg v)b: [1, 2]}</rosparam>
               <node pkg="k" type="t" name="n"><param name="p" value="$(arg v)"/><rosparam>{r: {x: 1}, p: 8}</rosparam>
                 <param name="d" command="xacro"/></node>
               <rosparam command="delete" param="gone"/>
             </group></launch>""",
-        "p/v.yaml": "f: 1\ngone: {x: 1, y: 2}\nn: {deep: {er: z}}",
+        "p/v.yaml": "f: 1\nraw: $(arg v)\ngone: {x: 1, y: 2}\nn: {deep: {er: z}}",
+        "p/w.yaml": "filled: $(arg v)",
     }
     launch = launched(files)
     assert {key: setting.value for key, setting in launch.server.items()} == {
-        "/top": 1.5, "/abs": True, "/g/text": "5", "/g/f": 1, "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2],
+        "/top": 1.5, "/abs": True, "/g/text": "5", "/g/f": 1, "/g/raw": "$(arg v)", "/g/filled": 7, "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2],
         "/g/n/p": 7, "/g/n/r/x": 1, "/g/n/d": None, "/g/n/each": "e",
     }  # fmt: skip
     assert values(launch) == {"deep/er": "z", "p": 7, "r/x": 1, "d": None, "each": "e"}

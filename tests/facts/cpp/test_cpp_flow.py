@@ -180,6 +180,7 @@ def test_a_guard_has_the_line_of_what_asks():
          ["make:M(number:1)", "text:a\"b", "text:x\n\"", "number:nullptr", "number:true"], "", ""),
         ("f(/* no */ a, // b\n c);", "f", ["name:a", "name:c"], "", ""),
         ("f(\"%\" PRId64 \"x\", a);", "f", ["text:%x", "name:a"], "", ""),
+        ("f(1,\n#ifdef A\n2\n#else\n3\n#endif\n);", "f", ["number:1", "number:2"], "", ""),
     ],
 )  # fmt: skip
 def test_calls(text, callee, arguments, types, target):

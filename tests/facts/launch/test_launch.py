@@ -297,6 +297,7 @@ SHELL = [
     ("roslaunch nav a.launch x:=1 &", [("file", "nav", "a.launch")]),
     ("roslaunch a.launch", []),
     ("roslaunch nav robot:=r1", []),
+    ("roslaunch nav demo", []),
     ("roslaunch --wait nav a.launch", [("file", "nav", "a.launch")]),
     ('roslaunch nav "$1"', [("package", "nav", "")]),
     ("rostest nav a.test", [("file", "nav", "a.test")]),
