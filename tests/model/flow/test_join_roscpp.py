@@ -111,6 +111,23 @@ def test_a_class_over_three_files_belongs_to_the_program_that_makes_it():
     assert timer.callback.name == "nav::Server::send"
 
 
+@pytest.mark.parametrize(
+    ("links", "node"),
+    [
+        ({"walker": ("core",)}, "p/walker"),
+        ({"walker": ("zeta",), "zeta": ("core",)}, "p/walker"),
+        ({}, "p/core"),  # of nobody's but the library's
+    ],
+)
+def test_what_no_call_is_seen_to_reach_belongs_to_the_program_that_links_it(links, node):
+    files = {
+        "p/walker.cpp": 'int main(int argc, char** argv) { ros::init(argc, argv, "walker"); load("legs"); }',
+        "p/core.cpp": 'void step(ros::NodeHandle& n) { ros::Publisher p = n.advertise<std_msgs::Bool>("/step", 1); }',
+    }
+    built = BuiltPackage("p", {"walker": ("p/walker.cpp",)}, {"core": ("p/core.cpp",)}, {}, {}, links)
+    assert ends(graph(files, 1, built=(built,)), "publisher") == {(node, "/step", "std_msgs/Bool")}
+
+
 def test_guards_of_the_only_caller_come_first():
     found = graph({"p/a.cpp": """
         class A {
