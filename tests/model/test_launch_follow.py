@@ -163,7 +163,8 @@ def test_server_of_ros1():
     launch = launched(files)
     assert {key: setting.value for key, setting in launch.server.items()} == {
         "/top": 1.5, "/abs": True, "/g/text": "5", "/g/f": 1, "/g/raw": "$(arg v)", "/g/filled": 7,
-        "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2], "/g/n/p": 7, "/g/n/r/x": 1, "/g/n/d": None, "/g/n/each": "e",
+        "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2], "/g/n/p": 7,
+        "/g/n/r/x": 1, "/g/n/d": None, "/g/n/each": "e",
     }  # fmt: skip
     assert values(launch) == {"deep/er": "z", "p": 7, "r/x": 1, "d": None, "each": "e"}
     assert launch.server["/g/n/d"].text.reasons == ("it is the output of a command",)
