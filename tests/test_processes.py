@@ -62,6 +62,16 @@ def at_once(monkeypatch):
 
 
 @needs_fork
+def test_a_file_name_that_is_no_utf8_comes_back_from_a_process(tmp_path, at_once):
+    ws = ring(tmp_path / "ws", 3)
+    before = check(ws, Options(("jazzy",), jobs=3, cache=tmp_path / "cache"))
+    Path(os.fsdecode(os.fsencode(ws / "link_0/src") + b"/caf\xe9.txt")).write_text("")
+    after = check(ws, Options(("jazzy",), jobs=3, cache=tmp_path / "cache"))
+    assert before.findings and after.failure == ""
+    assert [f for f in after.findings if f.rule != "unreadable-file"] == list(before.findings)
+
+
+@needs_fork
 def test_processes_report_what_one_reports(tmp_path, at_once):
     ws = ring(tmp_path / "ws", 9)
     targets = ("humble", "jazzy")

@@ -90,6 +90,9 @@ DAMAGE = {
     "cut off": lambda path: path.write_bytes(path.read_bytes()[:6000]),
     "zeros inside": lambda path: path.write_bytes(path.read_bytes()[:4096] + b"\0" * (path.stat().st_size - 4096)),
     "its tables and another": lambda path: sqlite3.connect(path).executescript("CREATE TABLE more (a)").close(),
+    "a table of another form": lambda path: sqlite3.connect(path).executescript(
+        "PRAGMA writable_schema = ON; UPDATE sqlite_master SET sql = replace(sql, ' NOT NULL', '') WHERE name = 'facts'"
+    ).close(),
     "other tables": lambda path: (
         path.unlink(),
         sqlite3.connect(path).executescript("CREATE TABLE facts (a); PRAGMA user_version = 3;").close(),

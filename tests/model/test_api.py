@@ -282,7 +282,8 @@ def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
     ("argument", "shown"),
     [('"a"', "text"), ("1.5f", "float"), ("-3", "integer"), ("[this](int a) { return a; }", "lambda"), ("true", "bool"),
      ("std::bind(&A::b, this)", "bind"), ("nullptr", "null"), ("rmw_qos_profile_default", "profile"),
-     ("rclcpp::SensorDataQoS()", "qos"), ("qos.get_rmw_qos_profile()", "profile"), ("this", "this"), ("x + 1", "")],
+     ("rclcpp::SensorDataQoS()", "qos"), ("qos.get_rmw_qos_profile()", "profile"), ("this", "this"),
+     ("*this", "*this"), ("*other", ""), ("!true", ""), ("x + 1", "")],
 )  # fmt: skip
 def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)

@@ -97,6 +97,14 @@ FOUND = [
     ("function(f x)\nfind_package(${x})\nendfunction()\nf(A)\nf(B)", ["A", "B"]),
     ("function(f)\nset(v A PARENT_SCOPE)\nset(v B)\nendfunction()\nf()\nfind_package(${v})", ["A"]),
     ("function(f)\nreturn()\nfind_package(A)\nendfunction()\nf()\nfind_package(B)", ["B"]),
+    (
+        "function(f)\nif(X)\nreturn()\nendif()\nfind_package(A)\nendfunction()\nf()\nfind_package(B)",
+        ["A [!X]", "B"],
+    ),
+    (
+        "macro(m)\nif(X)\nreturn()\nendif()\nfind_package(A)\nendmacro()\nm()\nfind_package(B)",
+        ["A [!X]", "B [!X]"],
+    ),
     ("while(TRUE)\nfind_package(A)\nbreak()\nendwhile()", ["A"]),
     ("find_package(A)\nbroken(\nfind_package(B)\n", ["A", "B"]),
     ("find_package(${UNKNOWN} REQUIRED)", []),
@@ -252,6 +260,13 @@ TARGETS = [
     ("ament_add_gtest(x t.cpp TIMEOUT 10 SKIP_TEST u.cpp)", "x", "test", ("pkg/t.cpp", "pkg/u.cpp")),
     ("ament_add_pytest_test(x test/t.py)", "x", "test", ("pkg/test/t.py",)),
     ("add_custom_target(x ALL)", "x", "custom", ()),
+    ("ament_vendor(x VCS_URL https://example.org/x.git VCS_VERSION 1.2)", "x", "external", ()),
+    (
+        'function(f y)\nif(A)\nset(y x)\nendif()\nadd_library(${y} a.cpp)\nendfunction()\nf("b;c")',
+        "x",
+        "library",
+        ("pkg/a.cpp",),
+    ),
     ("target_link_libraries(x y)", "x", "unknown", ()),
     ("generate_parameter_library(x p.yaml)", "x", "generated", ()),
     ("rosidl_generate_interfaces(x msg/A.msg)", "x", "generated", ()),
@@ -507,6 +522,11 @@ def test_a_variable_that_nothing_sets_tells_where_it_is_read():
     (use,) = build("add_library(x a.cpp)\ntarget_link_libraries(x ${A_LIBRARIES})").uses
     assert (use.kind, use.name, use.context, use.at.line, use.at.column) == ("variable", "A_LIBRARIES",
                                                                            "target_link_libraries", 2, 25)  # fmt: skip
+
+
+def test_a_policy_stands_where_its_name_is_written():
+    (use,) = build("cmake_policy(SET\n  CMP0072 NEW)").uses
+    assert (use.kind, use.name, use.at.line, use.at.column) == ("feature", "CMP0072", 2, 3)
 
 
 def test_several_files_share_their_scopes_as_cmake_has_it():

@@ -210,6 +210,17 @@ def test_settings_that_cannot_be_read_are_told(tmp_path):
     ]
 
 
+def test_patterns_that_take_too_long_match_nothing(tmp_path):
+    long = "b" * 200
+    patterns = ", ".join([*(f"'(x{{300}}){{9}}{letter}'" for letter in "abcdefghijkl"), "'b'"])
+    files = {"colcon_defaults.yaml": f"build: {{packages-skip-regex: [{patterns}]}}", "b/package.xml": B}
+    found = find(tmp_path, {**files, "c/package.xml": manifest(long)})
+    assert [place.name for place in found.packages] == [long]
+    assert [problem.message for problem in found.problems] == [
+        "packages-skip-regex: takes too long, the rest of it is not matched"
+    ]
+
+
 def test_extra_dependencies(tmp_path):
     files = {
         "colcon.meta": "names: {a: {dependencies: [x], cmake-args: [-DA=1]}, c: {dependencies: [no]}}",

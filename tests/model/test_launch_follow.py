@@ -151,17 +151,20 @@ def test_server_of_ros1():
               <param name="~each" value="e"/> <param name="~p" value="0"/>
               <param name="text" value="5" type="str"/>
               <rosparam file="$(find p)/v.yaml"/>
+              <rosparam file="$(find p)/w.yaml" subst_value="true"/>
               <rosparam ns="in" subst_value="true">{a: $(arg v), $(arg v)b: [1, 2]}</rosparam>
               <node pkg="k" type="t" name="n"><param name="p" value="$(arg v)"/><rosparam>{r: {x: 1}, p: 8}</rosparam>
                 <param name="d" command="xacro"/></node>
               <rosparam command="delete" param="gone"/>
             </group></launch>""",
-        "p/v.yaml": "f: 1\ngone: {x: 1, y: 2}\nn: {deep: {er: z}}",
+        "p/v.yaml": "f: 1\nraw: $(arg v)\ngone: {x: 1, y: 2}\nn: {deep: {er: z}}",
+        "p/w.yaml": "filled: $(arg v)",
     }
     launch = launched(files)
     assert {key: setting.value for key, setting in launch.server.items()} == {
-        "/top": 1.5, "/abs": True, "/g/text": "5", "/g/f": 1, "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2],
-        "/g/n/p": 7, "/g/n/r/x": 1, "/g/n/d": None, "/g/n/each": "e",
+        "/top": 1.5, "/abs": True, "/g/text": "5", "/g/f": 1, "/g/raw": "$(arg v)", "/g/filled": 7,
+        "/g/n/deep/er": "z", "/g/in/a": 7, "/g/in/7b": [1, 2], "/g/n/p": 7,
+        "/g/n/r/x": 1, "/g/n/d": None, "/g/n/each": "e",
     }  # fmt: skip
     assert values(launch) == {"deep/er": "z", "p": 7, "r/x": 1, "d": None, "each": "e"}
     assert launch.server["/g/n/d"].text.reasons == ("it is the output of a command",)
@@ -172,11 +175,17 @@ def test_nodelets():
     launch = launched("""<launch><group ns="g">
         <node pkg="nodelet" type="nodelet" name="box" args="manager"/>
         <node pkg="nodelet" type="nodelet" name="a" args="load p/A box image:=/i"/>
-        <node pkg="nodelet" type="nodelet" name="b" args="standalone p/B"/></group></launch>""")
+        <node pkg="nodelet" type="nodelet" name="b" args="standalone p/B"/>
+        <node pkg="nodelet" type="nodelet" name="c" args="unload a box"/></group></launch>""")
     assert [(s.kind, s.plugin.value, s.container.value) for s in launch.started] == [
-        ("container", "", ""), ("composable", "p/A", "/g/box"), ("node", "p/B", ""),
+        ("container", "", ""), ("composable", "p/A", "/g/box"), ("node", "p/B", ""), ("node", "", ""),
     ]  # fmt: skip
     assert remaps(launch.started[1]) == [("image", "/i")]
+
+
+def test_tests_of_ros1():
+    launch = launched(f'<launch>{node("n")}<test pkg="k" type="t" name="m" test-name="tries"/></launch>')
+    assert [(s.kind, s.full_name.value) for s in launch.started] == [("node", "/n"), ("test", "/m")]
 
 
 # ROS 2
@@ -214,6 +223,15 @@ def run2(body, **options):
          "name=LaunchConfiguration('b'))", ["/y", "/x"]),
         ("GroupAction([Node(package='k', executable='e', name=LaunchConfiguration('b', default='d'))], "
          "launch_configurations={'b': 'y'})", ["/y"]),
+        ("SetLaunchConfiguration('b', 'x'), GroupAction([Node(package='k', executable='e', "
+         "name=LaunchConfiguration('b', default='d'))], forwarding=True)", ["/x"]),
+        ("SetLaunchConfiguration('b', 'x'), GroupAction([Node(package='k', executable='e', "
+         "name=LaunchConfiguration('b', default='d'))], forwarding=False), Node(package='k', executable='e', "
+         "name=LaunchConfiguration('b'))", ["/d", "/x"]),
+        ("DeclareLaunchArgument('m', default_value='b'), Node(package='k', executable='e', "
+         "name='x' if LaunchConfiguration('m').perform(None) in ('a', 'b') else 'y')", ["/x"]),
+        ("DeclareLaunchArgument('m', default_value='c'), Node(package='k', executable='e', "
+         "name='x' if LaunchConfiguration('m').perform(None) in ('a', 'b') else 'y')", ["/y"]),
     ],
 )  # fmt: skip
 def test_names_of_ros2(body, expected):
@@ -323,6 +341,13 @@ def test_parameters_of_ros2():
     assert isinstance(rate, LaunchParameter)
     assert rate.text.assumed == ("rate",)
     assert [u.what for u in launch.unresolved] == ["parameters `gone.yaml`"]
+
+
+def test_a_rewritten_file_holds_below_its_root_key():
+    body = """Node(package='k', executable='e', name='n', namespace='robot', parameters=[RewrittenYaml(
+        source_file=[FindPackageShare('p'), '/v.yaml'], root_key='robot', param_rewrites={'rate': '9'})])"""
+    files = {"p/a.launch.py": python(body), "p/v.yaml": "n: {ros__parameters: {rate: 1, only: b}}"}
+    assert values(launched(files, "p/a.launch.py")) == {"rate": 9, "only": "b"}
 
 
 @pytest.mark.parametrize(

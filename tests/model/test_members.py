@@ -69,6 +69,11 @@ def cpp(text: str, fields: Fields, includes=ROS2, headers=()) -> list[str]:
         ("arm_msgs::msg::Arm a; for (const auto & j : a.joints) { j.old_name; }", ["Joint.message.old_name"]),
         ("arm_msgs::msg::Arm a; auto & t = a.tool; t.old_name;", ["Joint.message.old_name"]),
         ("class N { arm_msgs::msg::Arm a_; void f() { this->a_.mode; } };", ["Arm.message.mode"]),
+        ("void f() { auto g = [](const arm_msgs::msg::Arm & a) { a.mode; }; }", ["Arm.message.mode"]),
+        ("arm_msgs::msg::Arm a; void f() { auto g = [](Own a) { a.mode; }; }", []),
+        ("arm_msgs::msg::Arm a; void f() { auto g = [a = own()] { a.mode; }; auto h = [&a] { a.mode; }; }",
+         ["Arm.message.mode"]),
+        ("void f(arm_msgs::msg::Arm & a) { (&a)->mode; (*&a).mode; }", ["Arm.message.mode"] * 2),
         ("int x = arm_msgs::msg::Arm::OLD;", ["Arm.message.OLD"]),
         ("int x = arm_msgs::srv::Start::Request::FAST;", ["Start.request.FAST"]),
         ("arm_msgs::action::Move::Goal g; g.speed_limit = 1;", ["Move.goal.speed_limit"]),
@@ -84,6 +89,7 @@ def cpp(text: str, fields: Fields, includes=ROS2, headers=()) -> list[str]:
         ("std::map<arm_msgs::msg::Arm, int> a; a[0].mode;", []),
         ("other_msgs::msg::Arm a; a.mode;", []),
         ("Own::Arm::OLD;", []),
+        ("int x = arm_msgs::srv::Start::request::FAST;", []),
     ],
 )  # fmt: skip
 def test_cpp(text, found, fields):
@@ -132,6 +138,8 @@ def test_two_classes_of_one_name_tell_nothing(fields):
         ("get()->start_arms = {};", ["start_arms"]),
         ("unseen.start_arms = {};", ["start_arms"]),
         ("Own o; o.start_arms = {};", []),  # it has a type of its own
+        ("class N { Own o_; void f() { o_.start_arms = {}; } };", []),
+        ("struct M { int o(); }; void N::f() { o.start_arms = {}; }", ["start_arms"]),  # that is another's function
         ("struct Own { int start_arms; }; get()->start_arms = {};", []),
         ("get()->mode;", []),  # a common word
         ("get()->old_name; get()->new_name;", ["old_name", "new_name"]),

@@ -129,9 +129,7 @@ def split_list(text: str) -> list[str]:
 
 
 def split_word(item: Word) -> tuple[Word, ...]:
-    """The list items inside one word, each with its own place where that is known."""
-    if ";" not in item:
-        return (item,) if item else ()
+    """The list items inside one word that holds several, each with its own place where that is known."""
     if item.parts:
         return item.parts
     return tuple(word(part, item.at, item.conditions, item.sure) for part in split_list(item))

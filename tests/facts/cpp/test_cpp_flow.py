@@ -180,6 +180,7 @@ def test_a_guard_has_the_line_of_what_asks():
          ["make:M(number:1)", "text:a\"b", "text:x\n\"", "number:nullptr", "number:true"], "", ""),
         ("f(/* no */ a, // b\n c);", "f", ["name:a", "name:c"], "", ""),
         ("f(\"%\" PRId64 \"x\", a);", "f", ["text:%x", "name:a"], "", ""),
+        ("f(1,\n#ifdef A\n2\n#else\n3\n#endif\n);", "f", ["number:1", "number:2"], "", ""),
     ],
 )  # fmt: skip
 def test_calls(text, callee, arguments, types, target):
@@ -218,6 +219,7 @@ def test_noise_is_left_out_and_what_it_is_given_is_not(text, called):
     [
         ("int a = 1, *b = &c;", [("a", "int", "=", "number:1"), ("b", "int*", "=", "function:c")]),
         ("const T & a = m->b;", [("a", "const T&", "=", "name:m.b")]),
+        ("int a = /* seconds */ 1;", [("a", "int", "=", "number:1")]),
         ("ros::NodeHandle n;", [("n", "ros::NodeHandle", "=", "make:ros::NodeHandle")]),
         ('ros::NodeHandle n("~");', [("n", "ros::NodeHandle", "=", "make:ros::NodeHandle(text:~)")]),
         ("ros::Rate r(rate);", [("r", "ros::Rate", "=", "make:ros::Rate(name:rate)")]),

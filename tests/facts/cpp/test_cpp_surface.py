@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rosimpact.impact.facts.cpp.surface import extract
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode
 from rosimpact.impact.facts.kinds import extract as facts_of
-from rosimpact.impact.facts.surface import Entity, plain
+from rosimpact.impact.facts.surface import Entity, declared, plain
 
 
 def offered(text: str) -> list[Entity]:
@@ -153,6 +153,24 @@ def test_bases_templates_and_final():
         ("template", "C", None),
     ]
     assert one.traits == ("final",)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("template<class T, int N, typename... A> class B : public C {};",
+         "template<typename T, int N, typename... A> class B : public C"),
+        ("template<typename> struct D;\ntemplate<typename> struct D {};", "template<typename> struct D"),
+        ("enum class E : int { F };", "enum class E : int"),
+    ],
+)  # fmt: skip
+def test_how_an_entity_could_be_written(text, line):
+    assert declared(offered(text)[0]) == line
+
+
+def test_a_macro_may_stand_for_final():
+    (one,) = offered("class ARM_PUBLIC Arm ARM_FINAL : public Base {};")
+    assert (one.name, one.traits, [base.type for base in one.bases]) == ("Arm", ("final",), ["Base"])
 
 
 @pytest.mark.parametrize(

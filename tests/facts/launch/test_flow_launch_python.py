@@ -107,6 +107,12 @@ def test_what_actions_say():
 
 VALUES = [
     ("'a' + 'b'", "ab"),
+    ("LaunchConfiguration('p') + ['/', x]", "<arg p>/b"),
+    ("[x, '/'] + LaunchConfiguration('p')", "b/<arg p>"),
+    ("str(LaunchConfiguration('p')) + x", "<arg p>b"),
+    ("str(8) + x", "8b"),
+    ("x + str(2 * 3)", "b6"),
+    ("'a' if 2 > 1 else 'c'", "a"),
     ("f'a{x}c'", "abc"),
     ("'%s/%s' % ('a', x)", "a/b"),
     ("'{}-{k}'.format(x, k=1)", "b-1"),

@@ -296,6 +296,8 @@ SHELL = [
     ("rosrun --prefix gdb tf tf_echo", [("executable", "tf", "tf_echo")]),
     ("roslaunch nav a.launch x:=1 &", [("file", "nav", "a.launch")]),
     ("roslaunch a.launch", []),
+    ("roslaunch nav robot:=r1", []),
+    ("roslaunch nav demo", []),
     ("roslaunch --wait nav a.launch", [("file", "nav", "a.launch")]),
     ('roslaunch nav "$1"', [("package", "nav", "")]),
     ("rostest nav a.test", [("file", "nav", "a.test")]),

@@ -144,6 +144,8 @@ SHARE = "from ament_index_python.packages import get_package_share_directory as 
         ("def f():\n  '''about $(find p)'''", []),
         ("MoveItConfigsBuilder('panda', package_name='p')", [("package", "p", "")]),
         ("MoveItConfigsBuilder('panda')", [("package", "panda_moveit_config", "")]),
+        ("MoveItConfigsBuilder(**given, package_name='p')", [("package", "p", "")]),
+        ("MoveItConfigsBuilder(**given)", []),
         ("def load(name, path):\n  return open(get_package_share_directory(name) + path)\nload('p', 'a.yaml')",
          [("package", "p", "")]),
     ],

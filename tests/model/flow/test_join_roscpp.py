@@ -111,6 +111,23 @@ def test_a_class_over_three_files_belongs_to_the_program_that_makes_it():
     assert timer.callback.name == "nav::Server::send"
 
 
+@pytest.mark.parametrize(
+    ("links", "node"),
+    [
+        ({"walker": ("core",)}, "p/walker"),
+        ({"walker": ("zeta",), "zeta": ("core",)}, "p/walker"),
+        ({}, "p/core"),  # of nobody's but the library's
+    ],
+)
+def test_what_no_call_is_seen_to_reach_belongs_to_the_program_that_links_it(links, node):
+    files = {
+        "p/walker.cpp": 'int main(int argc, char** argv) { ros::init(argc, argv, "walker"); load("legs"); }',
+        "p/core.cpp": 'void step(ros::NodeHandle& n) { ros::Publisher p = n.advertise<std_msgs::Bool>("/step", 1); }',
+    }
+    built = BuiltPackage("p", {"walker": ("p/walker.cpp",)}, {"core": ("p/core.cpp",)}, {}, {}, links)
+    assert ends(graph(files, 1, built=(built,)), "publisher") == {(node, "/step", "std_msgs/Bool")}
+
+
 def test_guards_of_the_only_caller_come_first():
     found = graph({"p/a.cpp": """
         class A {
@@ -170,6 +187,19 @@ def test_images_have_their_camera_info_beside_them():
         ("publisher", "/a/out", "sensor_msgs/Image"),
     }
     assert [publish.topic for publish in found.publishes] == ["/a/out"]
+
+
+def test_the_camera_info_that_image_transport_names_for_an_image():
+    found = graph({"p/a.cpp": """
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "a");
+          ros::NodeHandle n;
+          ros::Publisher p = n.advertise<sensor_msgs::CameraInfo>(
+            image_transport::getCameraInfoTopic("front/image_raw"), 1);
+          ros::spin();
+        }
+    """}, 1)  # fmt: skip
+    assert ends(found, "publisher") == {("p/a", "/front/camera_info", "sensor_msgs/CameraInfo")}
 
 
 def test_filters_get_the_callback_of_their_synchronizer():
@@ -411,6 +441,7 @@ def test_what_a_handle_from_elsewhere_names_is_not_known():
         ("ros::NodeHandle n; Lamp lamp(n);", "/lit"),
         ('ros::NodeHandle n("~"); Lamp lamp(n);', "/node/lit"),
         ('ros::NodeHandle n("room"); Light lamp(n);', "/room/lit"),
+        ('ros::NodeHandle own("room"); ros::NodeHandle n = own; Lamp lamp(n);', "/room/lit"),
         ('ros::NodeHandle n, own("~"); Lamp lamp(n); Lamp other(own);', ""),  # one of two
         ('std::string where; ros::param::get("where", where); ros::NodeHandle n(where); Lamp lamp(n);', ""),
     ],

@@ -85,6 +85,20 @@ def test_arguments_of_argparse():
     assert ("publisher", "/out", "std_msgs/String", "given") in found
 
 
+def test_arguments_without_those_of_ros():
+    code = """
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "relay");
+          ros::V_string words;
+          ros::removeROSArgs(argc, argv, words);
+          ros::NodeHandle n;
+          ros::Publisher pub = n.advertise<std_msgs::String>(words[1], 1);
+        }
+    """
+    found = ends({"p/relay.cpp": code}, ("p", "relay", ("/in", "__name:=other")))
+    assert found == {("publisher", "/in", "std_msgs/String", "given")}
+
+
 def test_arguments_that_nobody_gives_are_not_known():
     found = joined({"p/relay.cpp": RELAY}, 1).graph()
     assert {e.topic for e in found.endpoints if not e.implied} == {""}

@@ -11,6 +11,7 @@ APART = (
     ("/camera1/image", "/camera2/image"), ("/arm_l", "/arm_r"), ("/pose_x", "/pose_y"), ("/left_wheel", "/right_wheel"),
     ("/a/image", "/b/image"), ("/goal", "/gold"), ("/map", "/maps"), ("/scan/front", "/scam/frond"), ("/odom", "/odom"),
     ("/robot/odom", "/odom"), ("/input_image", "/output_image"), ("/imu_data", "/imu_date_time"),
+    ("/l_wheel", "/r_wheel"), ("/arm_l_joint", "/arm_r_joint"),
 )  # fmt: skip
 
 
