@@ -13,6 +13,6 @@ class Late:
         self._name = name
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # pytest asks it of everything
+        if name.startswith(("_", "pytest")):  # what pytest asks of everything
             raise AttributeError(name)
         return getattr(importlib.import_module(self._name), name)
