@@ -239,11 +239,11 @@ CASES = [case for case in rule_cases.find_cases() if case.findings]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeypatch):
+def test_rules_per_target_see_nothing_but_digests(case, cache, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
     rules = [rule for rule in all_rules().values() if rule.scope == "target"]
-    options, tree = Options(targets=("jazzy", "noetic"), cache=tmp_path / "facts"), rule_cases.MemoryTree(case.files)
+    options, tree = Options(targets=("jazzy", "noetic"), cache=cache), rule_cases.MemoryTree(case.files)
     with open_workspace("case", options, tree=tree) as opened:
         for view in opened.views:
             whole = [list(rule.run(view)) for rule in rules]

@@ -4,9 +4,11 @@ import json
 
 import numpy as np
 import pytest
-from rosimpact.classifier import evaluate, training
+from late import Late
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
+
+evaluate, training = Late("rosimpact.classifier.evaluate"), Late("rosimpact.classifier.training")
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.classifier import training
+from late import Late
 from rosimpact.classifier.model import SHIPPED, ClassifierError, load, packed, softmax
 from rosimpact.classifier.reading import VIEWS, read
 from rosimpact.corpus.report import LABELS_FILE, read_labels
 from written_reports import rows, write
+
+training = Late("rosimpact.classifier.training")
 
 
 @pytest.fixture(scope="module")

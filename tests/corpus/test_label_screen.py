@@ -15,6 +15,9 @@ from rosimpact.corpus.labelling import WHY_LIMIT, Session, current_labels
 from rosimpact.corpus.report import LABELS, PHASES, Report, faults_of
 
 GUIDE = GUIDE_FILE.read_text(encoding="utf-8")
+# It is drawn beside every text and takes most of the time: enough of it to be scrolled. A test of its own draws all.
+SHORT = "\n".join(GUIDE.splitlines()[:30])
+SIZES = [(100, 30), (60, 20), (20, 5), (200, 60)]
 KEYS = [
     *"12345679nrsuab[]jkgG ",
     "<escape>",
@@ -49,16 +52,31 @@ def drawn(screen: Screen, width: int = 100, height: int = 30) -> str:
 
 
 @settings(deadline=None, max_examples=60)
-@given(TEXTS, TEXTS, st.sampled_from([(100, 30), (60, 20), (20, 5), (200, 60)]))
+@given(TEXTS, TEXTS, st.sampled_from(SIZES))
 def test_any_text_is_drawn_and_sends_no_control_character(title, body, size):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "labels.jsonl"
         with Session(file, "ann", "first", [report(1, title, body)]) as session:
-            screen = Screen(session, lambda title, body: ("other", {}), GUIDE)
+            screen = Screen(session, lambda title, body: ("other", {}), SHORT)
             for key in ("", "r", "G"):
                 screen.press(key or "<resize>")
                 shown = drawn(screen, *size)
                 assert all(sign == "\n" or sign.isprintable() for sign in shown)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_whole_guide_is_drawn_and_scrolled(tmp_path, size):
+    with Session(tmp_path / "labels.jsonl", "ann", "first", [report(1)]) as session:
+        screen = Screen(session, lambda title, body: ("other", {}), GUIDE)
+        seen = []
+        for _ in range(5):
+            seen.append(drawn(screen, *size))
+            assert all(sign == "\n" or sign.isprintable() for sign in seen[-1])
+            screen.press("]")
+        for _ in range(6):
+            screen.press("[")
+        assert drawn(screen, *size) == seen[0]
+        assert (seen[1] != seen[0]) == (size[1] >= 30), "the small ones have no room for a guide"
 
 
 @settings(deadline=None, max_examples=40)
@@ -69,7 +87,7 @@ def test_any_keys_leave_labels_that_follow_the_guide(moves, mode):
         reports = [report(n) for n in range(1, 5)]
         for annotator, reading in (("ann", "first"), ("bob", "second"), ("eve", mode)):
             with Session(file, annotator, reading, reports) as session:
-                screen = Screen(session, lambda title, body: ("other", {"other": 1.0}), GUIDE)
+                screen = Screen(session, lambda title, body: ("other", {"other": 1.0}), SHORT)
                 for key in (key for move in moves for key in move):
                     screen.press(key)
                 assert not screen.ended

@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
+from late import Late
 from rosimpact.classifier import study as triage_study
-from rosimpact.classifier.evaluate import Judged
-from rosimpact.classifier.training import Example
 from rosimpact.corpus.curves import pooled_share, survival
 from rosimpact.corpus.figures import apart, names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
@@ -18,6 +16,9 @@ from rosimpact.corpus.study import command, run
 from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import all_rules
 from typer.testing import CliRunner
+
+evaluate, training = Late("rosimpact.classifier.evaluate"), Late("rosimpact.classifier.training")
+figure = Late("matplotlib.figure")
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 DATA = NOTEBOOKS / "data"
@@ -161,8 +162,8 @@ def test_the_shipped_predictions_are_of_the_committed_labels():
 
 def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     report = Report("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
-    example = Example(report=report, label="dependency", twice=False)
-    judged = Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
+    example = training.Example(report=report, label="dependency", twice=False)
+    judged = evaluate.Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
     beside = {"majority": {"macro_f1": {"value": 0.5, "low": 0.4, "high": 0.6}, "right": 1.0}}
     digests = {"labels_digest": "1", "texts_digest": "2"}
     found = triage_study.Measured(triage_study.predictions_of([example], judged), beside, digests)
@@ -232,7 +233,7 @@ def test_names_stay_apart():
 
 
 def test_names_of_lines_that_end_far_apart_are_left_where_they_are():
-    axes = Figure(figsize=(9, 4)).subplots()
+    axes = figure.Figure(figsize=(9, 4)).subplots()
     for name, x in (("early", 1.0), ("late", 10.0), ("later", 10.0)):
         axes.plot([0, x], [0, 1], label=name)
     names(axes)

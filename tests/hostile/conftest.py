@@ -17,12 +17,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def are_all_chosen(config: pytest.Config) -> bool:
+    return (config.getoption("--attacks", None) or os.environ.get("ROSIMPACT_ATTACKS", "sample")) == "all"
+
+
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test for each attack."""
     if "attack" not in metafunc.fixturenames:
         return
-    chosen = metafunc.config.getoption("--attacks", None) or os.environ.get("ROSIMPACT_ATTACKS", "sample")
-    rows = attacks() if chosen == "all" else sample()
+    rows = attacks() if are_all_chosen(metafunc.config) else sample()
     attacks.cache_clear()  # what is not chosen holds 140 MB of text, which every fork would take along
     metafunc.parametrize(
         "attack", rows, ids=[f"{row.group}: {row.name}".encode("ascii", "backslashreplace").decode() for row in rows]
@@ -30,6 +33,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 @pytest.fixture(scope="session")
-def shooting_range(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Range]:
-    with Range(root=tmp_path_factory.mktemp("hostile")) as place:
+def shooting_range(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Iterator[Range]:
+    with Range(root=tmp_path_factory.mktemp("hostile"), experience=not are_all_chosen(pytestconfig)) as place:
         yield place

@@ -384,14 +384,56 @@ class _Heard(http.server.BaseHTTPRequestHandler):
         return
 
 
+class _Server:
+    """A process that forks runs (server.py)."""
+
+    def __init__(self, interpreter: str) -> None:
+        reading, writing = os.pipe()
+        self._process = subprocess.Popen(
+            [
+                interpreter,
+                "-P" if sys.version_info >= (3, 11) else "-B",
+                str(Path(__file__).with_name("server.py")),
+                str(writing),
+            ],
+            stdin=subprocess.PIPE,
+            pass_fds=(writing,),
+            text=True,
+            encoding="utf-8",
+        )
+        os.close(writing)
+        self._answers = os.fdopen(reading, encoding="utf-8")
+
+    def ask(self, question: dict[str, Any]) -> dict[str, Any]:
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(question) + "\n")
+        self._process.stdin.flush()
+        line = self._answers.readline()
+        if not line:
+            raise RuntimeError("the server is gone")
+        return json.loads(line)
+
+    def end(self) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        self._process.wait()
+        self._answers.close()
+
+
+# Groups whose attacks concern what is read once in a process.
+_FROM_THE_START = frozenset({"cache", "environment", "pipes"})
+
+
 class Range:
     """Where attacks are run, one after the other. Use as a context manager.
 
-    interpreter: a Python that has rosimpact. root: a folder for places, made when None.
+    interpreter: a Python that has rosimpact. root: a folder for places, made when None. experience: whether runs may
+    come from a process that has checked the healthy workspace before.
     """
 
-    def __init__(self, interpreter: str = sys.executable, root: Path | None = None) -> None:
+    def __init__(self, interpreter: str = sys.executable, root: Path | None = None, experience: bool = False) -> None:
         self.interpreter = interpreter
+        self.experience = experience
         self.root = Path(tempfile.mkdtemp(prefix="hostile-")) if root is None else root
         self._own = root is None
         self.script = str(self.root / "rosimpact")
@@ -404,29 +446,14 @@ class Range:
         self._web.heard = []  # pyright: ignore[reportAttributeAccessIssue]
         threading.Thread(target=self._web.serve_forever, daemon=True).start()
         self.url = f"http://127.0.0.1:{self._web.server_address[1]}"
-        reading, writing = os.pipe()
-        self._process = subprocess.Popen(
-            [
-                self.interpreter,
-                "-P" if sys.version_info >= (3, 11) else "-B",
-                str(Path(__file__).with_name("server.py")),
-                str(writing),
-            ],
-            stdin=subprocess.PIPE,
-            pass_fds=(writing,),
-            text=True,
-            encoding="utf-8",
-        )
-        os.close(writing)
-        self._answers = os.fdopen(reading, encoding="utf-8")
+        self._fresh = _Server(self.interpreter)
+        self._experienced: _Server | None = None
         self._warm()
         return self
 
     def __exit__(self, *_: object) -> None:
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        self._process.wait()
-        self._answers.close()
+        for server in filter(None, (self._fresh, self._experienced)):
+            server.end()
         self._web.shutdown()
         self._web.server_close()
         if self._own:
@@ -443,20 +470,26 @@ class Range:
         program = (self.interpreter, "-c", EVERY_COMMAND, json.dumps(lines), str(listing))
         ended = self._run(Attack("warm", "", {}, (), direct=True, program=program, seconds=60), place, [])
         assert ended.status == 0, ended
-        self._ask({"warm": listing.read_text().split()})
+        self._modules = listing.read_text().split()
+        self._fresh.ask({"warm": self._modules})
+        self._warmed = place
         self.template = place.cache
 
-    def _ask(self, question: dict[str, Any]) -> dict[str, Any]:
-        assert self._process.stdin is not None
-        self._process.stdin.write(json.dumps(question) + "\n")
-        self._process.stdin.flush()
-        line = self._answers.readline()
-        if not line:
-            raise RuntimeError("the server is gone")
-        return json.loads(line)
+    def _server_for(self, attack: Attack) -> _Server:
+        """The process that runs an attack. One that has looked up before what the targets hold saves half of the time
+        of a run. What concerns the cache, the environment or limits is run as in a process that has just begun, and so
+        is everything with --attacks=all."""
+        installed = attack.direct or attack.program
+        if not self.experience or installed or attack.group in _FROM_THE_START or attack.environment or attack.limits:
+            return self._fresh
+        if self._experienced is None:
+            self._experienced = _Server(self.interpreter)
+            seen = {"workspace": str(self._warmed.ws), "environment": self._environment(self._warmed)}
+            self._experienced.ask({"warm": self._modules, **seen})
+        return self._experienced
 
-    def _run(self, attack: Attack, place: Place, arguments: list[str]) -> Ended:
-        environment = {
+    def _environment(self, place: Place) -> dict[str, str]:
+        return {
             "PATH": os.environ.get("PATH", "/usr/bin:/bin"),
             "HOME": str(place.home),
             "LANG": "C.UTF-8",
@@ -464,15 +497,18 @@ class Range:
             "ROSIMPACT_CACHE": str(place.cache),
             "CANARY": place.secret,
             **{name: self.url for name in ("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")},
-            **{name: place.filled(value) for name, value in attack.environment.items()},
         }
+
+    def _run(self, attack: Attack, place: Place, arguments: list[str]) -> Ended:
+        added = {name: place.filled(value) for name, value in attack.environment.items()}
+        environment = self._environment(place) | added
         program = attack.program or ((self.interpreter, "-c", ENTRY) if attack.direct else ("rosimpact",))
         program = tuple(
             place.filled(part).replace("{python}", self.interpreter).replace("{script}", self.script)
             for part in program
         )
         streams = {"stdout": place.root / "stdout", "stderr": place.root / "stderr"}
-        answer = self._ask(
+        answer = self._server_for(attack).ask(
             {
                 "command": [*program, *arguments],
                 "cwd": place.filled(attack.cwd),
@@ -495,7 +531,8 @@ class Range:
         self._count += 1
         place = Place(self.root / str(self._count), self.url)
         place.interpreter = self.interpreter
-        # Copies only where they may be written to in place: most runs only read these 20 MB.
+        # Copies only where they may be written to in place: most runs only read these 20 MB. Through links they see the
+        # status of the template's files, so that no run has to compare contents with the digests beside them.
         shutil.copytree(self.template, place.cache, copy_function=shutil.copy2 if attack.group == "cache" else _shared)
         try:
             made(attack, place)
@@ -568,7 +605,7 @@ class Range:
 
 def _shared(source: str, target: str) -> None:
     if os.path.basename(source).startswith(("distros", "providers")):
-        os.link(source, target)
+        os.symlink(source, target)
     else:
         shutil.copy2(source, target)
 

@@ -24,6 +24,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="one class")
     parser.add_argument("--name", default="", help="only attacks whose name holds this")
     parser.add_argument("--from-failures", default="", help="only attacks that failed in this file")
+    parser.add_argument("--experience", action="store_true", help="from a process that has checked before, as CI does")
     parser.add_argument("--sample", action="store_true", help="only the sample that CI takes")
     parser.add_argument("--resume", action="store_true", help="leave out what --out holds already, and add to it")
     asked = parser.parse_args()
@@ -46,7 +47,7 @@ def main() -> int:
     every: Counter[str] = Counter()
     with (
         open(asked.out or os.devnull, "a" if asked.resume else "w") as out,
-        ProcessPoolExecutor(asked.jobs, initializer=_start, initargs=(asked.python,)) as pool,
+        ProcessPoolExecutor(asked.jobs, initializer=_start, initargs=(asked.python, asked.experience)) as pool,
     ):
         for future in as_completed([pool.submit(_attempt, name) for name in names]):
             result = future.result()
@@ -62,8 +63,8 @@ def main() -> int:
     return 0 if good.total() == every.total() else 1
 
 
-def _start(python: str) -> None:
-    _RANGE.append(Range(python).__enter__())
+def _start(python: str, experience: bool) -> None:
+    _RANGE.append(Range(python, experience=experience).__enter__())
 
 
 def _attempt(name: str) -> dict[str, object]:

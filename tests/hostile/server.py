@@ -156,12 +156,29 @@ def prepare():
         build(_select_command(name))
 
 
+def look_up(workspace, environment):
+    """Checks a workspace in this process, so that runs know already what the targets and the program's tables hold."""
+    os.environ.clear()
+    os.environ.update(environment)
+    try:
+        from rosimpact.edges import processes
+        from rosimpact.impact.analysis.check import check
+        from rosimpact.impact.analysis.session import Options
+    except ImportError:  # older versions
+        return
+    may_fork, processes.may_fork = processes.may_fork, lambda: False
+    check(workspace, Options(targets=("humble", "jazzy", "lyrical"), preview=True, jobs=1))
+    processes.may_fork = may_fork
+
+
 def main():
     answers = int(sys.argv[1])  # no object, which would close what has its number in a child
     for line in sys.stdin:
         job = json.loads(line)
         if "warm" in job:
             warm(job["warm"])
+            if "workspace" in job:
+                look_up(job["workspace"], job["environment"])
             gc.collect()
             gc.freeze()
             os.write(answers, b"{}\n")

@@ -7,10 +7,10 @@ import threading
 import time
 from contextlib import closing
 
-import dask
-import distributed
+from late import Late
 from rosimpact.databuild import cluster, jobs
 
+dask, distributed = Late("dask"), Late("distributed")
 QUIET = {"host": "127.0.0.1", "dashboard_address": ":0"}
 
 

@@ -6,8 +6,8 @@ import time
 from collections import Counter
 
 import cluster_process
-import distributed
 import pytest
+from late import Late
 from rosimpact.databuild import cluster
 from rosimpact.databuild.cluster import ClusterError, done_by
 from rosimpact.databuild.surface.clones import Clones
@@ -16,6 +16,7 @@ from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.store import Surfaces
 from test_build_surfaces import release
 
+distributed = Late("distributed")
 PACKAGES = {
     "rclcpp": "ros2+rclcpp",
     "cv_bridge": "ros-perception+vision_opencv",
