@@ -33,7 +33,8 @@ def test_yaml(text, value):
     [
         (ALIASES, "more than 200,000 nodes, aliases included", 7),
         (MERGES, "more than 200,000 nodes, aliases included", 15),
-        ("[" * 5000, "nested deeper than 200 levels", 1),
+        # PyYAML 6.0.4 stops at 1,000 levels by itself.
+        ("[" * 5000, "nested deeper than 200 levels|exceeded maximum nesting depth", 1),
         ("- " * 50_000 + "x", "nested deeper than 200 levels", 1),
         ("a: 1\nb: &b [*b]", "an alias stands for something that contains it", 2),
         ("a: !!python/object/apply:os.system [ls]", "could not determine a constructor", 1),

@@ -257,7 +257,8 @@ def test_generation(text, generation):
         ("launch_xml", b"<launch>" + b"<group>" * 5000, "nested more than"),
         ("launch_yaml", b"a: b", "has no `launch:` list"),
         ("launch_yaml", b"launch:\n- [", "not readable as YAML"),
-        ("launch_yaml", b"launch: " + b"[" * 5000, "nested more than"),
+        # As our own limit or, since PyYAML 6.0.4, its own says.
+        ("launch_yaml", b"launch: " + b"[" * 5000, "nest"),
         ("launch_yaml", b"launch:\n" + b"- let: {name: a}\n" * 60_000, "has more than"),
     ],
 )
