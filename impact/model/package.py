@@ -28,7 +28,7 @@ from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
-from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
+from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_space
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
@@ -432,7 +432,6 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
         self.python_methods: set[str] = set()
-        self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
@@ -695,10 +694,7 @@ class _Join:
             # What nothing compiles may belong to something that is not built here.
             return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        def declared(paths: Collection[str]) -> Mapping[str, DeclaredCpp]:
-            return dict(zip(paths, self.declared(paths), strict=True))
-
-        yield from list_own_calls(sources, included, self.spoken, declared)
+        yield from list_own_calls(sources, included, self.spoken, lambda paths: self.look(paths, "called_cpp"))
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
@@ -911,7 +907,7 @@ class _Join:
             words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
             if not words:
                 continue
-            headers = [self.known(to) for to in sorted(self.reached_files(path))]
+            headers = [self.known(to) for to in sorted(self.reached(path)) if to != path]
             code = self.known(path).code
             seen = set()
             for found in MemberUses(Resolver((self.known(path), *headers), None, scope)).found(words, not unknown):
@@ -946,7 +942,7 @@ class _Join:
             has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
             if not words and not has_exported:
                 continue
-            reached = sorted(to for to in self.reached_files(path) if to in spoken)
+            reached = sorted(to for to in self.reached(path) if to != path and to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
             has_exported = (
                 has_exported
@@ -986,17 +982,6 @@ class _Join:
         facts = self.cpp[path]
         parts = (part for name in facts.qualified for part in name.text.split("::"))
         return frozenset((*facts.words.split(" "), *parts, *facts.using))
-
-    def reached_files(self, path: str) -> set[str]:
-        """The package's own files that a file includes, directly or through each other."""
-        found: set[str] = set()
-        stack = [path]
-        while stack:
-            for to, _ in self.resolved.get(stack.pop(), ()):
-                if to is not None and to not in found:
-                    found.add(to)
-                    stack.append(to)
-        return found - {path}
 
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
@@ -1040,9 +1025,10 @@ class _Join:
         around = self.macros.asked(word.conditions, targets)
         return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
-    def reach(self, path: str) -> set[str]:
+    @cached_method
+    def reach(self, path: str) -> frozenset[str]:
         """All include paths that reach a file, through files of the package."""
-        return {include.path for at in self.reached(path) for _, include in self.resolved.get(at, ())}
+        return frozenset(include.path for at in self.reached(path) for _, include in self.resolved.get(at, ()))
 
     def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
@@ -1094,9 +1080,10 @@ class _Join:
         found = {i.path for at in self.reached(path) for to, i in self.resolved.get(at, ()) if to is None}
         return tuple(sorted(found))
 
-    def reached(self, path: str) -> list[str]:
+    @cached_method
+    def reached(self, path: str) -> tuple[str, ...]:
         """The file and the files of the package that it includes, directly or not."""
-        return list(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
+        return tuple(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this
@@ -1105,22 +1092,25 @@ class _Join:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        conversion = space == "tf2" and word[0].islower()
-        found = (
-            declared for declared in self.declared(self.reached(path))
-            if word in (declared.tf2 if conversion else declared.types)
-        )  # fmt: skip
-        # tf2 has a Quaternion too.
-        message = type_in(name) is not None
-        return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
+        if type_in(name) is not None:  # tf2 has a Quaternion too
+            texts = (self.read(at) for at in self.reached(path) if self.may_open(at, head))
+            return any(opens_space(text, head) and declares_type(text, word) for text in texts)
+        declares = declares_in_tf2 if space == "tf2" and word[0].islower() else declares_type
+        speaking = (at for at in self.reached(path) if len(word) < 4 or word in self.spoken(at))
+        return any(declares(self.read(at), word) for at in speaking)
 
-    def declared(self, paths: Collection[str]) -> Iterator[DeclaredCpp]:
-        """What C++ files of the package declare."""
-        known = self._declared
-        unknown = [path for path in paths if path not in known]
-        if unknown:
-            known.update(self.look(unknown, "declared_cpp"))
-        return (known[path] for path in paths if path in known)
+    def may_open(self, path: str, space: str) -> bool:
+        """Whether a C++ file may open a namespace: its name stands there alone, or before another part that makes no
+        type of an interface of it."""
+        return len(space) < 4 or space in self.opened_spaces(path)
+
+    @cached_method
+    def opened_spaces(self, path: str) -> frozenset[str]:
+        """Every word of a C++ file that has four letters or more, and the first parts of its qualified names, those of
+        types of interfaces aside."""
+        facts = self.cpp[path]
+        heads = (name.text.partition("::")[0] for name in facts.qualified if type_in(name.text) is None)
+        return frozenset((*facts.words.split(" "), *heads))
 
     def python(self, files: dict[str, PythonFile]):
         modules: set[str] = set()

@@ -100,6 +100,11 @@ class KnownFile:
         """Whether the word may stand in it."""
         return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
 
+    def mentions_any(self, names: frozenset[str]) -> bool:
+        """Whether one of some words may stand in it."""
+        rest = [name for name in names if len(name) < 4] if self.words else names
+        return not names.isdisjoint(self.words) or any(map(self.code.mentions, rest))
+
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""

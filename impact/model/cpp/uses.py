@@ -3,6 +3,8 @@
 import re
 from collections.abc import Collection, Iterable, Iterator
 
+from ....edges.memory import cached_method
+from ...facts.cpp.lexical import KEYWORDS
 from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import template_arguments
@@ -12,13 +14,17 @@ from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver
 
 _LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
+_OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
+# What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
+_NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
 _SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
 # What the text of arguments has where one of them shows itself to be something that can be refused.
 _SHOWN = {
     shown: re.compile(pattern)
     for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("qos", r"(?i:qos)"),
-        ("profile", r"(?i:qos|profile)"),
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"),
+        ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
+        ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
     )
 }  # fmt: skip
 # The types of quality of service: those of rclcpp, and the structure of rmw which they replaced.
@@ -71,12 +77,13 @@ class ApiUses:
             return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
         sign = text[before - 2 : before]
         if sign == "->" or sign.endswith("."):
-            return vocabulary.of_classes(word) and self._may_be_any(word, text, at + len(word))
+            return vocabulary.of_classes(word) and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
         if sign != "::":
-            return self._may_be_any(word, text, at + len(word))
+            return not _is_declared(text, before, at) and self._may_be_any(self._named_bare(word), text, at + len(word))
         scopes = _SCOPES.search(text, max(0, before - 160), before)
-        if scopes is None:
-            return True  # behind template arguments, or of the global namespace
+        if scopes is None:  # behind template arguments, or of the global namespace
+            of_std = _OF_STD.search(text, max(0, before - 160), before) is not None
+            return not of_std and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
         scope = "".join(scopes.group().split()).removesuffix("::")
         head = scope.partition("::")[0]
         if head == "std":
@@ -90,12 +97,25 @@ class ApiUses:
             return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
         if known is not None or scope.endswith(_INTERFACES):
             return False
-        return (scope in vocabulary.classes or not vocabulary.has_space(head)) and self._may_be_any(word, text, end)
+        if scope not in vocabulary.classes and vocabulary.has_space(head):
+            return False
+        return self._may_be_any(vocabulary.by_last(word), text, end)
 
-    def _may_be_any(self, word: str, text: str, end: int) -> bool:
-        """Whether any of the names that end so may be used in a way that differs between versions."""
-        names = (self.vocabulary.names[name] for name in self.vocabulary.by_last(word))
-        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in names)
+    def _may_be_any(self, names: Iterable[str], text: str, end: int) -> bool:
+        """Whether one of some names that all end alike may be used in a way that differs between versions."""
+        every = map(self.vocabulary.names.__getitem__, names)
+        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in every)
+
+    @cached_method
+    def _named_bare(self, word: str) -> list[str]:
+        """The names that a word without an object or scopes before it may be: what is around them has to be near."""
+        owners = {name: name.rpartition("::")[0] for name in self.vocabulary.by_last(word)}
+        return [n for n, owner in owners.items() if not owner or self._is_near(self.vocabulary.speakers(owner))]
+
+    @cached_method
+    def _is_near(self, names: frozenset[str]) -> bool:
+        """Whether one of some names stands in the file or in a header of the package that it reaches."""
+        return any(file.mentions_any(names) for file in self.resolver.files)
 
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
@@ -292,7 +312,10 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
-        virtual = {word for word in words if self.vocabulary.is_virtual(word) and code.may_declare(word)}
+        virtual = {
+            word for word in words
+            if self._is_near(self.vocabulary.speakers_of_virtual(word)) and code.may_declare(word)
+        }  # fmt: skip
         for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue
@@ -339,6 +362,13 @@ class ApiUses:
 
     def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
+
+
+def _is_declared(text: str, before: int, at: int) -> bool:
+    """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
+    In capitals may be a macro, which is no type."""
+    last = _LAST_WORD.search(text, max(0, before - 80), before) if "\n" not in text[before:at] else None
+    return last is not None and last[0] not in _NO_TYPES and not last[0].isupper() and last[0][:2] != "__"
 
 
 def _may_differ(known: ChangingName, text: str, at: int) -> bool:
