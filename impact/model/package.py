@@ -379,6 +379,15 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         return Changing(self.surfaces) if self.surfaces is not None else None
 
     @cached_method
+    def about(self, written: str) -> tuple[str, str, tuple[str, ...] | None]:
+        """Of a qualified name of C++: the watched name that it is a use of, as meant() says; the name, or the type of
+        an interface that it begins with; and the headers one of which has to define that, None where any may."""
+        text = written.removeprefix("::")
+        headers = self.headers_of.get(text)
+        if headers is None and (made := type_in(text)) is not None:
+            return self.meant(text), made.name, made.headers
+        return self.meant(text), text, headers
+
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
@@ -727,25 +736,22 @@ class _Join:
                                    conditions + self.macros.asked(include.conditions, targets), targets,
                                    self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
-            reach, types = None, set()
+            types = set()
             for name in facts.qualified:
-                text = name.text.removeprefix("::")
-                wanted = watched.meant(text)
+                wanted, text, headers = watched.about(name.text)
                 if wanted:
                     names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
                                          conditions + self.macros.asked(name.conditions, targets),
                                          targets))  # fmt: skip
-                headers = watched.headers_of.get(text)
-                if headers is None and (made := type_in(text)) is not None and made.name not in types:
-                    types.add(made.name)
-                    text, headers = made.name, made.headers
-                if headers is not None:
-                    reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in headers) and not self.declares(path, text):
-                        around = conditions + self.macros.asked(name.conditions, targets)
-                        std = text.startswith("std::") and text not in _ANNOUNCED
-                        whole = std or text in facts.variables
-                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
+                if headers is None or text in types:
+                    continue
+                if type_in(text) is not None:
+                    types.add(text)
+                if self.reach(path).isdisjoint(headers) and not self.declares(path, text):
+                    around = conditions + self.macros.asked(name.conditions, targets)
+                    std = text.startswith("std::") and text not in _ANNOUNCED
+                    whole = std or text in facts.variables
+                    needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             found = self.searched.get(path)
             for word in found.words if found is not None else ():
                 if word.text in defined:
@@ -753,10 +759,8 @@ class _Join:
                 if word.text in watched.words and not word.initialised:  # else it is a variable of the file's own
                     names.append(self.bare(word, path, role, public, targets, conditions))
                 headers = watched.headers_of.get(word.text)
-                if headers is not None:
-                    reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in headers):
-                        needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
+                if headers is not None and self.reach(path).isdisjoint(headers):
+                    needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
 
     @cached_property

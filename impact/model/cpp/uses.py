@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
+from functools import lru_cache
 
 from ....edges.memory import cached_method
 from ...facts.cpp.lexical import KEYWORDS
@@ -397,6 +398,7 @@ def _may_differ(known: ChangingName, text: str, at: int) -> bool:
     return known.differs("call", count, shown, templated)
 
 
+@lru_cache(maxsize=64)  # every name that a word may be asks about the same place
 def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
     """How many arguments a bracket gives that opens at an offset (-1 where it opens something else), and their text;
     None where that takes a parser."""
