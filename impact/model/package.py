@@ -26,6 +26,7 @@ from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
+from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
 from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_space
@@ -48,9 +49,12 @@ from .python.undefined import (
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
+    from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
     from .cpp.resolver import KnownFile
+    from .discovery import PackagePlace
+    from .members import FoundField
     from .members import NamedInterface as Meant
     from .python.api import Changing
     from .settings import Setting
@@ -399,45 +403,23 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         return wanted
 
 
-def digest_of(
-    name: str,
-    path: str,
-    manifest_path: str,
-    manifest: Manifest,
-    build: Build,
-    build_type: str,
-    kinds: dict[str, str],
-    files: Iterable[str],
-    facts: Callable[[str], object],
-    look: Callable[..., Mapping[str, Any]],
-    read: Callable[[str], bytes],
-    watched: Watched,
-    home: Collection[str] = frozenset(),
-    asked: AskedVersions | None = None,
-    changing: Changes | None = None,
-) -> LinkedPackage:
-    """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
-    FileFacts; look: as Gathered.look; read: path to bytes, used only to find members and changing names of C++; home:
-    packages of the same workspace, which are not looked for in what changed elsewhere; asked: the versions of other
-    packages that uses may be wrong in, all when None; changing: C++ names of other packages that are not alike in
-    those."""
-    return _Join(
-        *(name, path, manifest_path, manifest, build, build_type, kinds, tuple(files)),
-        *(facts, look, read, watched, home, asked, changing),
-    ).digest()
+class PackageJoin:
+    """Joins the facts of a package's files. build: what its CMake says. files: all its paths. read: path to bytes, used
+    only to find members and changing names of C++. home: packages of the same workspace, which are not looked for in
+    what changed elsewhere. asked: the versions of other packages that uses may be wrong in, all when None. changing:
+    C++ names of other packages that are not alike in those."""
 
-
-class _Join:
     def __init__(
-        self, name, path, manifest_path, manifest, build, build_type, kinds, files,
-        facts, look, read, watched, home, asked, changing,
+        self, place: PackagePlace, manifest: Manifest, build: Build, build_type: str, files: Iterable[str],
+        gathered: ExtractedFacts, read: Callable[[str], bytes], watched: Watched, home: Collection[str] = frozenset(),
+        asked: AskedVersions | None = None, changing: Changes | None = None,
     ):  # fmt: skip
-        self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
-        self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
-        self.facts, self.look, self.watched, self.home = facts, look, watched, home
-        self.asked, self.changing = asked, changing
+        self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
+        self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
+        self.kinds, self.facts, self.look = gathered.kinds, gathered.facts, gathered.look
+        self.watched, self.home, self.asked, self.changing = watched, home, asked, changing
         self.read = cache(read)  # a file is looked into for several reasons
-        self.prefix = path + "/" if path else ""
+        self.prefix = f"{self.path}/" if self.path else ""
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
         self.python_methods: set[str] = set()
@@ -446,7 +428,6 @@ class _Join:
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
-        self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
 
@@ -462,6 +443,7 @@ class _Join:
         )
 
     def digest(self) -> LinkedPackage:
+        """All that rules ask of the package."""
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         # Files whose references nobody follows where the package is used.
@@ -576,9 +558,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
-            plain_scripts=tuple(
-                p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)
-            ),
+            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
@@ -591,7 +571,7 @@ class _Join:
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
             undefined=tuple(
-                ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
+                self.imported(p, i)
                 for p, i in (
                     *list_undefined(python, made, self.files),
                     *list_undefined(run_setup, (), ()),
@@ -919,9 +899,8 @@ class _Join:
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
-                    yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
-                                    found.member, At(path, *code.place(found.offset)), role, "cpp", found.sure,
-                                    conditions + around)  # fmt: skip
+                    at = At(path, *code.place(found.offset))
+                    yield _member_use(found, at, role, "cpp", conditions + around)
 
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
@@ -1007,9 +986,8 @@ class _Join:
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
-                        yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
-                                        found.section, found.member, At(path, use.line, use.column),
-                                        self.python_role(path), "python", found.sure)  # fmt: skip
+                        at = At(path, use.line, use.column)
+                        yield _member_use(found, at, self.python_role(path), "python")
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
@@ -1117,6 +1095,30 @@ class _Join:
         return frozenset((*facts.words.split(" "), *heads))
 
     def python(self, files: dict[str, PythonFile]):
+        """Imports, watched names and syntax of Python files, and the modules that the package has itself."""
+        modules = self.python_modules()
+        imports: list[ImportUse] = []
+        names: list[NameUse] = []
+        syntax: list[SyntaxUse] = []
+        for path, facts in files.items():
+            role = self.python_role(path)
+            others = [item for item in facts.imports if not item.level]
+            for item in others:
+                head = item.module.split(".")[0]
+                if head and head != self.name and head not in modules:
+                    imports.append(self.imported(path, item))
+            mentioned = [(attribute.text, attribute) for attribute in facts.attributes]
+            mentioned += [(text, i) for i in others for text in (i.module, *(f"{i.module}.{n}" for n in i.names))]
+            names.extend(
+                NameUse(text, At(path, place.line, place.column), role, False, "python", place.conditions)
+                for text, place in mentioned
+                if text in self.watched.python
+            )
+            syntax.extend(_list_syntax(path, role, facts))
+        return imports, names, syntax, modules
+
+    def python_modules(self) -> set[str]:
+        """Names of modules, packages and built libraries that Python files of the package may import."""
         modules: set[str] = set()
         for path in self.files:
             inside = self.inside(path)
@@ -1130,42 +1132,12 @@ class _Join:
                 modules.add(posixpath.basename(inside).split(".")[0])
         modules.update(t.name for t in self.build.targets if t.kind in ("module", "library"))
         modules.update(t.output_name for t in self.build.targets if t.output_name)
-        imports: list[ImportUse] = []
-        names: list[NameUse] = []
-        syntax: list[SyntaxUse] = []
-        for path, facts in files.items():
-            role = self.python_role(path)
-            for item in facts.imports:
-                head = item.module.split(".")[0]
-                if item.level or not head or head == self.name or head in modules:
-                    continue
-                imports.append(
-                    ImportUse(
-                        item.module, item.names, At(path, item.line, item.column), role, item.conditions, item.lazy
-                    )
-                )
-            for attribute in facts.attributes:
-                if attribute.text in self.watched.python:
-                    names.append(
-                        NameUse(
-                            attribute.text,
-                            At(path, attribute.line, attribute.column),
-                            role,
-                            False,
-                            "python",
-                            attribute.conditions,
-                        )
-                    )
-            for item in facts.imports:
-                if item.level:
-                    continue  # the package's own
-                for text in (item.module, *(f"{item.module}.{n}" for n in item.names)):
-                    if text in self.watched.python:
-                        names.append(
-                            NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions)
-                        )
-            syntax.extend(_list_syntax(path, role, facts))
-        return imports, names, syntax, modules
+        return modules
+
+    def imported(self, path: str, item: Import) -> ImportUse:
+        """An import of a Python file."""
+        at, role = At(path, item.line, item.column), self.python_role(path)
+        return ImportUse(item.module, item.names, at, role, item.conditions, item.lazy)
 
     def python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
         """Where Python packages may lie that others can import once the package is installed."""
@@ -1176,7 +1148,9 @@ class _Join:
                 roots.update(file.places_of(self.path, top)[0].removesuffix(".py") for top in tops)
         return roots
 
+    @cached_method
     def python_role(self, path: str) -> str:
+        """The role of what a Python file needs, as ImportUse has it."""
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
@@ -1210,6 +1184,7 @@ class _Join:
                 folder = posixpath.dirname(path)
                 waiting.extend(f"{folder}/{item.module.split('.')[0]}.py" for item in files[path].imports)
 
+    @cached_method
     def role(self, path: str) -> str | None:
         """As role_of_folder(). What only the name of the file or of the package calls an example is none where the
         package installs the file, along with others of its things."""
@@ -1221,21 +1196,24 @@ class _Join:
         installs = self.build_type == "ament_python" or bool(self.build.installs)
         return None if installs and self.is_installed(path) else "aside"
 
+    @cached_property
+    def _covered(self) -> tuple[set[str], list[str]]:
+        """The files and the folders that the package installs."""
+        single, folders = set(), []
+        for rule in self.build.installs:
+            if rule.kind in ("directory", "python"):
+                folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
+            else:
+                single.update(posixpath.normpath(item) for item in rule.items)
+        made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
+        if any("$" in item for item in (*(single - made), *folders)):
+            folders.append(self.path)
+        return single, folders
+
     def is_installed(self, path: str) -> bool:
         """True for files that reach the installed package, as far as its rules tell."""
         if self.build_type == "ament_python" or not self.build.files:
             return True
-        if self._covered is None:
-            single, folders = set(), []
-            for rule in self.build.installs:
-                if rule.kind in ("directory", "python"):
-                    folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
-                else:
-                    single.update(posixpath.normpath(item) for item in rule.items)
-            made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
-            if any("$" in item for item in (*(single - made), *folders)):
-                folders.append(self.path)
-            self._covered = single, tuple(folders)
         single, folders = self._covered
         if path in single or any(not f or path.startswith(f + "/") or f == self.path for f in folders):
             return True
@@ -1247,6 +1225,14 @@ class _Join:
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
+
+
+def _member_use(
+    found: FoundField, at: At, role: str, language: str, conditions: tuple[Condition, ...] = ()
+) -> MemberUse:
+    kind = found.interface
+    return MemberUse(kind.package, kind.ros, kind.name, found.section, found.member, at, role, language, found.sure,
+                     conditions)  # fmt: skip
 
 
 def _list_syntax(path: str, role: str, facts: PythonFile) -> Iterator[SyntaxUse]:

@@ -514,4 +514,3 @@ class MemberUses:
 
 def _members(file: KnownFile, name: str):
     return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]
-
