@@ -351,6 +351,11 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
     @cached_property
+    def in_tables(self) -> frozenset[str]:
+        """Every name of C++ that a table asks for."""
+        return self.words.union(self.qualified, self.headers_of)
+
+    @cached_property
     def in_cpp(self) -> UsageTable:
         """What to look for in C++ files."""
         words = {name for name in self.headers_of if "::" not in name}
@@ -759,10 +764,11 @@ class PackageJoin:
     def defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package whose versions are stored."""
-        asked = self.watched.words | self.watched.qualified | self.watched.headers_of.keys()
-        others = (self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()) - {self.name}
+        asked, surfaces = self.watched.in_tables, self.watched.surfaces
+        others = surfaces.packages if surfaces is not None else frozenset()
         for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
-            if name in asked or name.partition("::")[0] in others:
+            head = name.partition("::")[0]
+            if name in asked or (head in others and head != self.name):
                 yield name
 
     def uses(self, roles) -> Iterator[NameUse]:
@@ -813,6 +819,7 @@ class PackageJoin:
             return
         started: dict[str, list[NamedNode]] = {}
 
+        @cache
         def spoken(path: str) -> set[str]:
             return set(self.facts(path).facts.words.split(" "))
 
