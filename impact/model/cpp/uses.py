@@ -14,11 +14,12 @@ from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver
 
-_LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
+# Both are matched backwards from what stands behind them.
+_LAST_WORD = re.compile(r"\w*[A-Za-z_]")
 _OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
 # What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
 _NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
-_SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
+_SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
 # What the text of arguments has where one of them shows itself to be something that can be refused.
 _SHOWN = {
     shown: re.compile(pattern)
@@ -37,7 +38,7 @@ _DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
-_FARTHEST = 4000
+_FARTHEST, _FAR = 4000, 160
 _INTERFACES = ("::msg", "::srv", "::action")
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
 _TYPES = CLASSES | {"alias", "enum"}
@@ -71,21 +72,21 @@ class ApiUses:
         while before and text[before - 1] in " \t\n":
             before -= 1
         if word in ASSIGNING:
-            root = _LAST_WORD.search(text, max(0, before - 80), before)
-            if root is None:
+            root = _ahead(_LAST_WORD, text, before)
+            if not root:
                 return text[before - 1 : before] == "]"
             speakers = vocabulary.speakers_of(word)
-            return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
+            return root.endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
         sign = text[before - 2 : before]
         if sign == "->" or sign.endswith("."):
             return vocabulary.of_classes(word) and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
         if sign != "::":
             return not _is_declared(text, before, at) and self._may_be_any(self._named_bare(word), text, at + len(word))
-        scopes = _SCOPES.search(text, max(0, before - 160), before)
-        if scopes is None:  # behind template arguments, or of the global namespace
-            of_std = _OF_STD.search(text, max(0, before - 160), before) is not None
+        scopes = _ahead(_SCOPES, text, before)
+        if not scopes:  # behind template arguments, or of the global namespace
+            of_std = _OF_STD.search(text, max(0, before - _FAR), before) is not None
             return not of_std and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
-        scope = "".join(scopes.group().split()).removesuffix("::")
+        scope = "".join(scopes.split()).removesuffix("::")
         head = scope.partition("::")[0]
         if head == "std":
             return False
@@ -365,11 +366,17 @@ class ApiUses:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
 
 
+def _ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
+    """What stands before an offset of a text, empty where it does not match. pattern: of the same backwards."""
+    found = pattern.match(text[max(0, end - _FAR) : end][::-1])
+    return found[0][::-1] if found is not None else ""
+
+
 def _is_declared(text: str, before: int, at: int) -> bool:
     """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
     In capitals may be a macro, which is no type."""
-    last = _LAST_WORD.search(text, max(0, before - 80), before) if "\n" not in text[before:at] else None
-    return last is not None and last[0] not in _NO_TYPES and not last[0].isupper() and last[0][:2] != "__"
+    last = _ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
+    return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
 
 
 def _may_differ(known: ChangingName, text: str, at: int) -> bool:
