@@ -6,13 +6,13 @@ from functools import lru_cache
 
 from ....edges.memory import cached_method
 from ...facts.cpp.lexical import KEYWORDS
-from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
+from ...facts.cpp.schema import CodePlace, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import template_arguments
 from ...targets.surface.overrides import describe_override
 from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
-from .resolver import CppType, KnownFile, Resolver
+from .resolver import CppType, KnownFile, Resolver, around_class
 
 # Both are matched backwards from what stands behind them.
 _LAST_WORD = re.compile(r"\w*[A-Za-z_]")
@@ -322,7 +322,7 @@ class ApiUses:
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
-            lines = [self.resolver.known_bases(base, around_(class_)) for base in class_.bases] if declared else []
+            lines = [self.resolver.known_bases(base, around_class(class_)) for base in class_.bases] if declared else []
             for word in declared:
                 for method in class_.members[word]:
                     if method.kind != "function" or "static" in method.traits:
@@ -354,7 +354,7 @@ class ApiUses:
             have = {name for one in own for name in one.members}
             for one in own:
                 for base in one.bases:
-                    type_ = self.resolver.type_of(base, around_(one))
+                    type_ = self.resolver.type_of(base, around_class(one))
                     if type_ is None or type_.own or not type_.name:
                         continue
                     for name in self.vocabulary.pure(type_.name):
@@ -446,11 +446,6 @@ def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
 def _is_among(class_: str, names: Collection[str]) -> bool:
     """Whether a class is one of those that are named, in full or without the namespaces around."""
     return any(f"::{class_}".endswith(f"::{name}") for name in names)
-
-
-def around_(class_: CppClass) -> CodePlace:
-    """Where the bases of a class are written."""
-    return CodePlace(class_.name.rpartition("::")[0], "", False)
 
 
 def parameter_type(parameter: WrittenParameter | str) -> str:
