@@ -847,16 +847,10 @@ class PackageJoin:
                     yield self.setting(path, found)
 
     def setting(self, path: str, found: Setting) -> SettingUse:
-        return SettingUse(
-            found.name,
-            found.package,
-            found.plugin,
-            found.node,
-            found.others,
-            At(path, found.line),
-            self.python_role(path),
-            "" if found.value is None else str(found.value),
-        )
+        """A value that a file sets, as rules ask of it."""
+        value = "" if found.value is None else str(found.value)
+        place = At(path, found.line), self.python_role(path)
+        return SettingUse(found.name, found.package, found.plugin, found.node, found.others, *place, value)
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""

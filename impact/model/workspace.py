@@ -304,13 +304,7 @@ class Workspace:
             return False
         if rest.endswith("Config.h") and any(g.how == "reconfigure" for g in package.build.generated):
             return True
-        if rest.rsplit("/", 1)[-1] in (
-            "visibility_control.h",
-            "visibility_control.hpp",
-            "version.h",
-            "version.hpp",
-            "export.h",
-        ):
+        if rest.rsplit("/", 1)[-1] in _OFTEN_MADE:
             return True
         return package.is_interface_package and self.is_interface_header(package.name, rest)
 
@@ -370,6 +364,8 @@ class Workspace:
         return found
 
 
+# Headers that macros of CMake make under these names.
+_OFTEN_MADE = frozenset(("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"))
 _CONFIGURATION = re.compile(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$")
 
 
