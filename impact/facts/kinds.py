@@ -53,7 +53,7 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("distros", "ContainerFile", ("dockerfile", "ci")),
     ("searches", "SearchedCpp", ("searched_cpp",)),
     ("searches", "SearchedText", ("searched_text",)),
-    ("searches", "DeclaredCpp", ("declared_cpp",)),
+    ("searches", "CalledCpp", ("called_cpp",)),
 )  # fmt: skip
 EXTRACTORS = {kind: (module, struct) for module, struct, kinds in _READ_BY for kind in kinds}
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""

@@ -66,24 +66,19 @@ def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
     return SearchedText(uses, functions=methods_of(data, called))
 
 
-class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. spaces: namespaces.
-    tf2: words in namespace tf2, or in a special form of a template. functions: of classes and namespaces that it
-    defines outside of them, `Class::function`, and those that it defines at the start of a line, `::function`. called:
-    what is called without a receiver, and short names that are called on one, `.function`."""
+class CalledCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a C++ file defines and calls. functions: of classes and namespaces that it defines outside of them,
+    `Class::function`, and those that it defines at the start of a line, `::function`. called: what is called without a
+    receiver, and short names that are called on one, `.function`."""
 
-    types: frozenset[str] = frozenset()
-    spaces: frozenset[str] = frozenset()
-    tf2: frozenset[str] = frozenset()
     functions: frozenset[str] = frozenset()
     called: frozenset[str] = frozenset()
     problems: tuple[Problem, ...] = ()
 
 
-_TYPES = (b"class", b"struct", b"enum", b"typedef", b"using")
 _FAR = 300
-_HEAD = re.compile(rb"[^;{}=]*")
-_NAMED = re.compile(rb"([A-Za-z_]\w*)\s*[;:{=<]")
+_NAMED = re.compile(rb"(?!\w)\s*[;:{=<]")
+_DECLARING = re.compile(rb"(?<![a-zA-Z0-9])(?:class|struct|enum|typedef|using)(?![a-zA-Z0-9])[^;{}=]*\Z")
 # The macro of ros/message_forward.h that announces a message.
 _MESSAGE = re.compile(rb"ROS_DECLARE_MESSAGE\s*\(\s*(\w+)")
 _SPACE = re.compile(rb"namespace\s+(\w+)")
@@ -97,18 +92,36 @@ _FREE = re.compile(rb"\n(?!static|inline|template|else|return|typedef|using|exte
                    rb"([A-Za-z]\w{3,100}) ?(\([^;{}]{0,1000})\{")  # fmt: skip
 # Of what stands before a parenthesis, backwards: a name without a receiver, or a short one behind one.
 _CALLED = re.compile(rb" ?(?:(\w{3,100}[A-Za-z])(?![\w.>])|(\w{2}[A-Za-z])[.>])")
+_BRACKET = re.compile(rb"[()]")
 _AFTER_PARAMETERS = re.compile(rb"\s*(?:\Z|[a-z/&]|:(?!:)|->)")
 
 
-def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
-    """The names that a C++ file declares, as its text shows them."""
-    return DeclaredCpp(
-        _decoded({*_types(data), *_MESSAGE.findall(data)}),
-        _decoded(_SPACE.findall(data)),
-        _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
-        _decoded((*_functions(data), *_free_functions(data))),
-        _decoded(_called(data)),
-    )
+def declares_type(data: bytes, name: str) -> bool:
+    """Whether the text of a C++ file announces or defines a class, enum or alias of a name, or announces a message."""
+    word = name.encode()
+    at = data.find(word)
+    while at >= 0:
+        end, before = at + len(word), data[at - 1 : at]
+        sign = _NAMED.match(data, end) if not (before.isalnum() or before == b"_") else None
+        if sign is not None and _DECLARING.search(data, max(0, sign.end() - 1 - _FAR), at) is not None:
+            return True
+        at = data.find(word, end)
+    return word in _MESSAGE.findall(data)
+
+
+def opens_space(data: bytes, name: str) -> bool:
+    """Whether the text of a C++ file opens a namespace, itself or around others."""
+    return name.encode() in _SPACE.findall(data)
+
+
+def declares_in_tf2(data: bytes, name: str) -> bool:
+    """Whether the text of a C++ file has a word in namespace tf2, or in a special form of a template."""
+    return any(name.encode() in _WORD.findall(part[0]) for form in _OF_TF2 for part in form.finditer(data))
+
+
+def called_cpp(data: bytes, facts: CppFile, table: None) -> CalledCpp:
+    """The functions that a C++ file defines and calls, as its text shows them."""
+    return CalledCpp(_decoded((*_functions(data), *_free_functions(data))), _decoded(_called(data)))
 
 
 def _functions(data: bytes) -> Iterator[bytes]:
@@ -133,24 +146,11 @@ def _is_head(text: bytes) -> bool:
     """Whether parameters and what follows them up to a brace are those of a function that is defined: in a condition or
     an argument a parenthesis opens before, or something else follows."""
     depth = 0
-    for at, char in enumerate(text) if text.count(b"(") == text.count(b")") else ():
-        depth += (char == ord("(")) - (char == ord(")"))
+    for bracket in _BRACKET.finditer(text) if text.count(b"(") == text.count(b")") else ():
+        depth += 1 if bracket[0] == b"(" else -1
         if depth == 0:
-            return _AFTER_PARAMETERS.match(text, at + 1) is not None
+            return _AFTER_PARAMETERS.match(text, bracket.end()) is not None
     return False
-
-
-def _types(data: bytes) -> Iterator[bytes]:
-    for keyword in _TYPES:
-        at = data.find(keyword)
-        while at >= 0:
-            end = at + len(keyword)
-            if not data[at - 1 : at].isalnum() and not data[end : end + 1].isalnum():
-                head = _HEAD.match(data, end, at + _FAR)
-                end = head.end() if head is not None else end
-                for name in _NAMED.finditer(data, at + len(keyword), end + 1):
-                    yield name[1]
-            at = data.find(keyword, max(end, at + len(keyword)))
 
 
 def _decoded(words: Iterable[bytes]) -> frozenset[str]:

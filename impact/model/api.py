@@ -434,9 +434,11 @@ class Vocabulary:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
 
-    def is_virtual(self, word: str) -> bool:
-        """Whether a method that is looked for ends so and others may override it."""
-        return any(one.names[full].virtual for one in self._wanted for full in one.by_last.get(word, ()))
+    @cached_method
+    def speakers_of_virtual(self, word: str) -> frozenset[str]:
+        """As speakers_of(), for methods that are looked for and that others may override."""
+        names = (full for one in self._wanted for full in one.by_last.get(word, ()) if one.names[full].virtual)
+        return frozenset().union(*(self.speakers(full.rpartition("::")[0]) for full in names))
 
     def line(self, full: str) -> list[str]:
         """A class and those that it is derived from, nearest first."""

@@ -229,17 +229,10 @@ class _Search:
         variants = sorted(
             (int(match[1] or match[2]), _join(folder, name)) for name in names if (match := _VARIANT.match(name))
         )
-        if "package.xml" in names:
-            path = _join(folder, "package.xml")
-            manifest = self._manifest(path)
-            if manifest is None:
-                return None
-        elif variants:
-            path = variants[-1][1]
-            manifest = self._manifest(path)
-            if manifest is None or not manifest.name:
-                return None
-        else:
+        usual = "package.xml" in names
+        path = _join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
+        manifest = self._manifest(path)
+        if manifest is None or not (usual or manifest.name):
             return None
         given = self._given(folder, names)
         name = _text(given.get("name")) or manifest.name or _folder_name(folder, self.tree)

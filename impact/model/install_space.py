@@ -200,13 +200,10 @@ def _facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str
         except (ValueError, msgspec.MsgspecError):
             continue
     wanted = {key: path for path, key in keys.items() if key not in known}
-    fresh = dict(_read_all(wanted, sizes, store, jobs))
-    store.put([(key, data) for key, data in fresh.items() if data])
-    for key, data in fresh.items():
-        if data:
-            known[key] = msgspec.msgpack.decode(unpack(data), type=Elf)
-    for path, key in keys.items():
-        result[path] = known.get(key, "cannot be read")
+    fresh = {key: data for key, data in _read_all(wanted, sizes, store, jobs) if data}
+    store.put(list(fresh.items()))
+    known.update((key, msgspec.msgpack.decode(unpack(data), type=Elf)) for key, data in fresh.items())
+    result.update((path, known.get(key, "cannot be read")) for path, key in keys.items())
     return result
 
 

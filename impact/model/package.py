@@ -26,9 +26,10 @@ from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
+from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
-from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
+from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_space
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
@@ -48,9 +49,12 @@ from .python.undefined import (
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
+    from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
     from .cpp.resolver import KnownFile
+    from .discovery import PackagePlace
+    from .members import FoundField
     from .members import NamedInterface as Meant
     from .python.api import Changing
     from .settings import Setting
@@ -347,6 +351,11 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
     @cached_property
+    def in_tables(self) -> frozenset[str]:
+        """Every name of C++ that a table asks for."""
+        return self.words.union(self.qualified, self.headers_of)
+
+    @cached_property
     def in_cpp(self) -> UsageTable:
         """What to look for in C++ files."""
         words = {name for name in self.headers_of if "::" not in name}
@@ -379,6 +388,15 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         return Changing(self.surfaces) if self.surfaces is not None else None
 
     @cached_method
+    def about(self, written: str) -> tuple[str, str, tuple[str, ...] | None]:
+        """Of a qualified name of C++: the watched name that it is a use of, as meant() says; the name, or the type of
+        an interface that it begins with; and the headers one of which has to define that, None where any may."""
+        text = written.removeprefix("::")
+        headers = self.headers_of.get(text)
+        if headers is None and (made := type_in(text)) is not None:
+            return self.meant(text), made.name, made.headers
+        return self.meant(text), text, headers
+
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
@@ -390,55 +408,31 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         return wanted
 
 
-def digest_of(
-    name: str,
-    path: str,
-    manifest_path: str,
-    manifest: Manifest,
-    build: Build,
-    build_type: str,
-    kinds: dict[str, str],
-    files: Iterable[str],
-    facts: Callable[[str], object],
-    look: Callable[..., Mapping[str, Any]],
-    read: Callable[[str], bytes],
-    watched: Watched,
-    home: Collection[str] = frozenset(),
-    asked: AskedVersions | None = None,
-    changing: Changes | None = None,
-) -> LinkedPackage:
-    """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
-    FileFacts; look: as Gathered.look; read: path to bytes, used only to find members and changing names of C++; home:
-    packages of the same workspace, which are not looked for in what changed elsewhere; asked: the versions of other
-    packages that uses may be wrong in, all when None; changing: C++ names of other packages that are not alike in
-    those."""
-    return _Join(
-        *(name, path, manifest_path, manifest, build, build_type, kinds, tuple(files)),
-        *(facts, look, read, watched, home, asked, changing),
-    ).digest()
+class PackageJoin:
+    """Joins the facts of a package's files. build: what its CMake says. files: all its paths. read: path to bytes, used
+    only to find members and changing names of C++. home: packages of the same workspace, which are not looked for in
+    what changed elsewhere. asked: the versions of other packages that uses may be wrong in, all when None. changing:
+    C++ names of other packages that are not alike in those."""
 
-
-class _Join:
     def __init__(
-        self, name, path, manifest_path, manifest, build, build_type, kinds, files,
-        facts, look, read, watched, home, asked, changing,
+        self, place: PackagePlace, manifest: Manifest, build: Build, build_type: str, files: Iterable[str],
+        gathered: ExtractedFacts, read: Callable[[str], bytes], watched: Watched, home: Collection[str] = frozenset(),
+        asked: AskedVersions | None = None, changing: Changes | None = None,
     ):  # fmt: skip
-        self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
-        self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
-        self.facts, self.look, self.watched, self.home = facts, look, watched, home
-        self.asked, self.changing = asked, changing
+        self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
+        self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
+        self.kinds, self.facts, self.look = gathered.kinds, gathered.facts, gathered.look
+        self.watched, self.home, self.asked, self.changing = watched, home, asked, changing
         self.read = cache(read)  # a file is looked into for several reasons
-        self.prefix = path + "/" if path else ""
+        self.prefix = f"{self.path}/" if self.path else ""
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
         self.python_methods: set[str] = set()
-        self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
-        self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
 
@@ -454,6 +448,7 @@ class _Join:
         )
 
     def digest(self) -> LinkedPackage:
+        """All that rules ask of the package."""
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         # Files whose references nobody follows where the package is used.
@@ -568,9 +563,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
-            plain_scripts=tuple(
-                p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)
-            ),
+            plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
@@ -583,7 +576,7 @@ class _Join:
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
             undefined=tuple(
-                ImportUse(i.module, i.names, At(p, i.line, i.column), self.python_role(p), i.conditions, i.lazy)
+                self.imported(p, i)
                 for p, i in (
                     *list_undefined(python, made, self.files),
                     *list_undefined(run_setup, (), ()),
@@ -695,10 +688,7 @@ class _Join:
             # What nothing compiles may belong to something that is not built here.
             return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        def declared(paths: Collection[str]) -> Mapping[str, DeclaredCpp]:
-            return dict(zip(paths, self.declared(paths), strict=True))
-
-        yield from list_own_calls(sources, included, self.spoken, declared)
+        yield from list_own_calls(sources, included, self.spoken, lambda paths: self.look(paths, "called_cpp"))
 
     def installed_headers(self) -> list[str]:
         folders, single = [], set()
@@ -731,25 +721,22 @@ class _Join:
                                    conditions + self.macros.asked(include.conditions, targets), targets,
                                    self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
-            reach, types = None, set()
+            types = set()
             for name in facts.qualified:
-                text = name.text.removeprefix("::")
-                wanted = watched.meant(text)
+                wanted, text, headers = watched.about(name.text)
                 if wanted:
                     names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
                                          conditions + self.macros.asked(name.conditions, targets),
                                          targets))  # fmt: skip
-                headers = watched.headers_of.get(text)
-                if headers is None and (made := type_in(text)) is not None and made.name not in types:
-                    types.add(made.name)
-                    text, headers = made.name, made.headers
-                if headers is not None:
-                    reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in headers) and not self.declares(path, text):
-                        around = conditions + self.macros.asked(name.conditions, targets)
-                        std = text.startswith("std::") and text not in _ANNOUNCED
-                        whole = std or text in facts.variables
-                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
+                if headers is None or text in types:
+                    continue
+                if type_in(text) is not None:
+                    types.add(text)
+                if self.reach(path).isdisjoint(headers) and not self.declares(path, text):
+                    around = conditions + self.macros.asked(name.conditions, targets)
+                    std = text.startswith("std::") and text not in _ANNOUNCED
+                    whole = std or text in facts.variables
+                    needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             found = self.searched.get(path)
             for word in found.words if found is not None else ():
                 if word.text in defined:
@@ -757,10 +744,8 @@ class _Join:
                 if word.text in watched.words and not word.initialised:  # else it is a variable of the file's own
                     names.append(self.bare(word, path, role, public, targets, conditions))
                 headers = watched.headers_of.get(word.text)
-                if headers is not None:
-                    reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in headers):
-                        needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
+                if headers is not None and self.reach(path).isdisjoint(headers):
+                    needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
 
     @cached_property
@@ -779,10 +764,11 @@ class _Join:
     def defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package whose versions are stored."""
-        asked = self.watched.words | self.watched.qualified | self.watched.headers_of.keys()
-        others = (self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()) - {self.name}
+        asked, surfaces = self.watched.in_tables, self.watched.surfaces
+        others = surfaces.packages if surfaces is not None else frozenset()
         for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
-            if name in asked or name.partition("::")[0] in others:
+            head = name.partition("::")[0]
+            if name in asked or (head in others and head != self.name):
                 yield name
 
     def uses(self, roles) -> Iterator[NameUse]:
@@ -833,6 +819,7 @@ class _Join:
             return
         started: dict[str, list[NamedNode]] = {}
 
+        @cache
         def spoken(path: str) -> set[str]:
             return set(self.facts(path).facts.words.split(" "))
 
@@ -860,16 +847,10 @@ class _Join:
                     yield self.setting(path, found)
 
     def setting(self, path: str, found: Setting) -> SettingUse:
-        return SettingUse(
-            found.name,
-            found.package,
-            found.plugin,
-            found.node,
-            found.others,
-            At(path, found.line),
-            self.python_role(path),
-            "" if found.value is None else str(found.value),
-        )
+        """A value that a file sets, as rules ask of it."""
+        value = "" if found.value is None else str(found.value)
+        place = At(path, found.line), self.python_role(path)
+        return SettingUse(found.name, found.package, found.plugin, found.node, found.others, *place, value)
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
@@ -911,7 +892,7 @@ class _Join:
             words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
             if not words:
                 continue
-            headers = [self.known(to) for to in sorted(self.reached_files(path))]
+            headers = [self.known(to) for to in sorted(self.reached(path)) if to != path]
             code = self.known(path).code
             seen = set()
             for found in MemberUses(Resolver((self.known(path), *headers), None, scope)).found(words, not unknown):
@@ -919,9 +900,8 @@ class _Join:
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
-                    yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
-                                    found.member, At(path, *code.place(found.offset)), role, "cpp", found.sure,
-                                    conditions + around)  # fmt: skip
+                    at = At(path, *code.place(found.offset))
+                    yield _member_use(found, at, role, "cpp", conditions + around)
 
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
@@ -946,7 +926,7 @@ class _Join:
             has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
             if not words and not has_exported:
                 continue
-            reached = sorted(to for to in self.reached_files(path) if to in spoken)
+            reached = sorted(to for to in self.reached(path) if to != path and to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
             has_exported = (
                 has_exported
@@ -987,17 +967,6 @@ class _Join:
         parts = (part for name in facts.qualified for part in name.text.split("::"))
         return frozenset((*facts.words.split(" "), *parts, *facts.using))
 
-    def reached_files(self, path: str) -> set[str]:
-        """The package's own files that a file includes, directly or through each other."""
-        found: set[str] = set()
-        stack = [path]
-        while stack:
-            for to, _ in self.resolved.get(stack.pop(), ()):
-                if to is not None and to not in found:
-                    found.add(to)
-                    stack.append(to)
-        return found - {path}
-
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
         from .members import InterfaceScope
@@ -1018,9 +987,8 @@ class _Join:
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
-                        yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
-                                        found.section, found.member, At(path, use.line, use.column),
-                                        self.python_role(path), "python", found.sure)  # fmt: skip
+                        at = At(path, use.line, use.column)
+                        yield _member_use(found, at, self.python_role(path), "python")
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
@@ -1040,9 +1008,10 @@ class _Join:
         around = self.macros.asked(word.conditions, targets)
         return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
-    def reach(self, path: str) -> set[str]:
+    @cached_method
+    def reach(self, path: str) -> frozenset[str]:
         """All include paths that reach a file, through files of the package."""
-        return {include.path for at in self.reached(path) for _, include in self.resolved.get(at, ())}
+        return frozenset(include.path for at in self.reached(path) for _, include in self.resolved.get(at, ()))
 
     def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
@@ -1094,9 +1063,10 @@ class _Join:
         found = {i.path for at in self.reached(path) for to, i in self.resolved.get(at, ()) if to is None}
         return tuple(sorted(found))
 
-    def reached(self, path: str) -> list[str]:
+    @cached_method
+    def reached(self, path: str) -> tuple[str, ...]:
         """The file and the files of the package that it includes, directly or not."""
-        return list(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
+        return tuple(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this
@@ -1105,24 +1075,51 @@ class _Join:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        conversion = space == "tf2" and word[0].islower()
-        found = (
-            declared for declared in self.declared(self.reached(path))
-            if word in (declared.tf2 if conversion else declared.types)
-        )  # fmt: skip
-        # tf2 has a Quaternion too.
-        message = type_in(name) is not None
-        return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
+        if type_in(name) is not None:  # tf2 has a Quaternion too
+            texts = (self.read(at) for at in self.reached(path) if self.may_open(at, head))
+            return any(opens_space(text, head) and declares_type(text, word) for text in texts)
+        declares = declares_in_tf2 if space == "tf2" and word[0].islower() else declares_type
+        speaking = (at for at in self.reached(path) if len(word) < 4 or word in self.spoken(at))
+        return any(declares(self.read(at), word) for at in speaking)
 
-    def declared(self, paths: Collection[str]) -> Iterator[DeclaredCpp]:
-        """What C++ files of the package declare."""
-        known = self._declared
-        unknown = [path for path in paths if path not in known]
-        if unknown:
-            known.update(self.look(unknown, "declared_cpp"))
-        return (known[path] for path in paths if path in known)
+    def may_open(self, path: str, space: str) -> bool:
+        """Whether a C++ file may open a namespace: its name stands there alone, or before another part that makes no
+        type of an interface of it."""
+        return len(space) < 4 or space in self.opened_spaces(path)
+
+    @cached_method
+    def opened_spaces(self, path: str) -> frozenset[str]:
+        """Every word of a C++ file that has four letters or more, and the first parts of its qualified names, those of
+        types of interfaces aside."""
+        facts = self.cpp[path]
+        heads = (name.text.partition("::")[0] for name in facts.qualified if type_in(name.text) is None)
+        return frozenset((*facts.words.split(" "), *heads))
 
     def python(self, files: dict[str, PythonFile]):
+        """Imports, watched names and syntax of Python files, and the modules that the package has itself."""
+        modules = self.python_modules()
+        imports: list[ImportUse] = []
+        names: list[NameUse] = []
+        syntax: list[SyntaxUse] = []
+        for path, facts in files.items():
+            role = self.python_role(path)
+            others = [item for item in facts.imports if not item.level]
+            for item in others:
+                head = item.module.split(".")[0]
+                if head and head != self.name and head not in modules:
+                    imports.append(self.imported(path, item))
+            mentioned = [(attribute.text, attribute) for attribute in facts.attributes]
+            mentioned += [(text, i) for i in others for text in (i.module, *(f"{i.module}.{n}" for n in i.names))]
+            names.extend(
+                NameUse(text, At(path, place.line, place.column), role, False, "python", place.conditions)
+                for text, place in mentioned
+                if text in self.watched.python
+            )
+            syntax.extend(_list_syntax(path, role, facts))
+        return imports, names, syntax, modules
+
+    def python_modules(self) -> set[str]:
+        """Names of modules, packages and built libraries that Python files of the package may import."""
         modules: set[str] = set()
         for path in self.files:
             inside = self.inside(path)
@@ -1136,42 +1133,12 @@ class _Join:
                 modules.add(posixpath.basename(inside).split(".")[0])
         modules.update(t.name for t in self.build.targets if t.kind in ("module", "library"))
         modules.update(t.output_name for t in self.build.targets if t.output_name)
-        imports: list[ImportUse] = []
-        names: list[NameUse] = []
-        syntax: list[SyntaxUse] = []
-        for path, facts in files.items():
-            role = self.python_role(path)
-            for item in facts.imports:
-                head = item.module.split(".")[0]
-                if item.level or not head or head == self.name or head in modules:
-                    continue
-                imports.append(
-                    ImportUse(
-                        item.module, item.names, At(path, item.line, item.column), role, item.conditions, item.lazy
-                    )
-                )
-            for attribute in facts.attributes:
-                if attribute.text in self.watched.python:
-                    names.append(
-                        NameUse(
-                            attribute.text,
-                            At(path, attribute.line, attribute.column),
-                            role,
-                            False,
-                            "python",
-                            attribute.conditions,
-                        )
-                    )
-            for item in facts.imports:
-                if item.level:
-                    continue  # the package's own
-                for text in (item.module, *(f"{item.module}.{n}" for n in item.names)):
-                    if text in self.watched.python:
-                        names.append(
-                            NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions)
-                        )
-            syntax.extend(_list_syntax(path, role, facts))
-        return imports, names, syntax, modules
+        return modules
+
+    def imported(self, path: str, item: Import) -> ImportUse:
+        """An import of a Python file."""
+        at, role = At(path, item.line, item.column), self.python_role(path)
+        return ImportUse(item.module, item.names, at, role, item.conditions, item.lazy)
 
     def python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
         """Where Python packages may lie that others can import once the package is installed."""
@@ -1182,7 +1149,9 @@ class _Join:
                 roots.update(file.places_of(self.path, top)[0].removesuffix(".py") for top in tops)
         return roots
 
+    @cached_method
     def python_role(self, path: str) -> str:
+        """The role of what a Python file needs, as ImportUse has it."""
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
@@ -1216,6 +1185,7 @@ class _Join:
                 folder = posixpath.dirname(path)
                 waiting.extend(f"{folder}/{item.module.split('.')[0]}.py" for item in files[path].imports)
 
+    @cached_method
     def role(self, path: str) -> str | None:
         """As role_of_folder(). What only the name of the file or of the package calls an example is none where the
         package installs the file, along with others of its things."""
@@ -1227,21 +1197,24 @@ class _Join:
         installs = self.build_type == "ament_python" or bool(self.build.installs)
         return None if installs and self.is_installed(path) else "aside"
 
+    @cached_property
+    def _covered(self) -> tuple[set[str], list[str]]:
+        """The files and the folders that the package installs."""
+        single, folders = set(), []
+        for rule in self.build.installs:
+            if rule.kind in ("directory", "python"):
+                folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
+            else:
+                single.update(posixpath.normpath(item) for item in rule.items)
+        made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
+        if any("$" in item for item in (*(single - made), *folders)):
+            folders.append(self.path)
+        return single, folders
+
     def is_installed(self, path: str) -> bool:
         """True for files that reach the installed package, as far as its rules tell."""
         if self.build_type == "ament_python" or not self.build.files:
             return True
-        if self._covered is None:
-            single, folders = set(), []
-            for rule in self.build.installs:
-                if rule.kind in ("directory", "python"):
-                    folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
-                else:
-                    single.update(posixpath.normpath(item) for item in rule.items)
-            made = {item for item in single if _BUILT.match(item)}  # a folder there may hold copies of what is here
-            if any("$" in item for item in (*(single - made), *folders)):
-                folders.append(self.path)
-            self._covered = single, tuple(folders)
         single, folders = self._covered
         if path in single or any(not f or path.startswith(f + "/") or f == self.path for f in folders):
             return True
@@ -1253,6 +1226,14 @@ class _Join:
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
+
+
+def _member_use(
+    found: FoundField, at: At, role: str, language: str, conditions: tuple[Condition, ...] = ()
+) -> MemberUse:
+    kind = found.interface
+    return MemberUse(kind.package, kind.ros, kind.name, found.section, found.member, at, role, language, found.sure,
+                     conditions)  # fmt: skip
 
 
 def _list_syntax(path: str, role: str, facts: PythonFile) -> Iterator[SyntaxUse]:

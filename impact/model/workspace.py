@@ -35,7 +35,7 @@ from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover, generation, manifest_at
 from .ignored import holds_ignored, is_ignored
-from .package import LinkedPackage, Watched, build_type_of, digest_of
+from .package import LinkedPackage, PackageJoin, Watched, build_type_of
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
@@ -195,35 +195,29 @@ class Workspace:
     @cached_property
     def headers(self) -> dict[str, list[str]]:
         """Include path to the packages whose files answer it, for every suffix of every header's path."""
-        found: dict[str, list[str]] = {}
-        for package in self:
-            for path in package.digest.headers:
-                path = path.removesuffix(".in")
-                while True:
-                    owners = found.setdefault(path, [])
-                    if package.name not in owners:
-                        owners.append(package.name)
-                    if "/" not in path:
-                        break
-                    path = path.split("/", 1)[1]
-        return found
+        return _owners(
+            ("/".join(parts[at:]), package.name)
+            for package in self
+            for path in package.digest.headers
+            for parts in (path.removesuffix(".in").split("/"),)
+            for at in range(len(parts))
+        )
 
     @cached_property
     def rooted_headers(self) -> dict[str, list[str]]:
         """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout
         of ROS 2), to the packages that have them."""
-        found: dict[str, list[str]] = {}
-        for package in self:
-            for path in package.digest.headers:
-                _, root, rest = f"/{path.removesuffix('.in')}".rpartition("/include/")
-                if not root:
-                    continue
+
+        def spelt(package: Package, path: str) -> Iterator[str]:
+            _, root, rest = f"/{path.removesuffix('.in')}".rpartition("/include/")
+            if root:
+                yield rest
                 head, _, tail = rest.partition("/")
-                for spelling in (rest, tail) if head == package.name and tail else (rest,):
-                    owners = found.setdefault(spelling, [])
-                    if package.name not in owners:
-                        owners.append(package.name)
-        return found
+                if head == package.name and tail:
+                    yield tail
+
+        headers = ((package, path) for package in self for path in package.digest.headers)
+        return _owners((each, package.name) for package, path in headers for each in spelt(package, path))
 
     @cached_property
     def generated_headers(self) -> dict[str, list[str]]:
@@ -257,11 +251,7 @@ class Workspace:
     @cached_property
     def modules(self) -> dict[str, list[str]]:
         """Python module name to the packages of the workspace that have one of that name."""
-        found: dict[str, list[str]] = {}
-        for package in self:
-            for module in {package.name, *importable(package)}:
-                found.setdefault(module, []).append(package.name)
-        return found
+        return _owners((module, package.name) for package in self for module in {package.name, *importable(package)})
 
     @cached_property
     def cmake_files(self) -> frozenset[str]:
@@ -314,13 +304,7 @@ class Workspace:
             return False
         if rest.endswith("Config.h") and any(g.how == "reconfigure" for g in package.build.generated):
             return True
-        if rest.rsplit("/", 1)[-1] in (
-            "visibility_control.h",
-            "visibility_control.hpp",
-            "version.h",
-            "version.hpp",
-            "export.h",
-        ):
+        if rest.rsplit("/", 1)[-1] in _OFTEN_MADE:
             return True
         return package.is_interface_package and self.is_interface_header(package.name, rest)
 
@@ -380,6 +364,8 @@ class Workspace:
         return found
 
 
+# Headers that macros of CMake make under these names.
+_OFTEN_MADE = frozenset(("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"))
 _CONFIGURATION = re.compile(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$")
 
 
@@ -426,6 +412,14 @@ def _names_interface(rest: str, stems: tuple[frozenset[str], frozenset[str]]) ->
 def is_interface_header(rest: str, names: Iterable[str]) -> bool:
     """True when `rest` (an include path after `package/`) is generated from one of the named interfaces."""
     return _names_interface(rest, _stems(names))
+
+
+def _owners(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    """Names to those that have them, each once and in order. named: pairs of the two."""
+    found: dict[str, dict[str, None]] = {}
+    for name, owner in named:
+        found.setdefault(name, {})[owner] = None
+    return {name: list(owners) for name, owners in found.items()}
 
 
 def link(
@@ -693,24 +687,11 @@ class _Linker:
         if before is not None and build == before.build:
             return before, read
         build_type = _called(build, build_type_of(manifest, self.ros))
-        digest = digest_of(
-            place.name or manifest.name,
-            place.path,
-            place.manifest_path,
-            manifest,
-            build,
-            build_type,
-            gathered.kinds,
-            files,
-            gathered.facts,
-            gathered.look,
-            self.tree.read,
-            self.watched,
-            self.home,
-            self.asked,
-            self.changing,
+        joined = PackageJoin(
+            *(place, manifest, build, build_type, files, gathered, self.tree.read),
+            *(self.watched, self.home, self.asked, self.changing),
         )
-        return digest, read
+        return joined.digest(), read
 
     @cached_property
     def changing(self) -> Changes | None:

@@ -100,7 +100,7 @@ LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "paramete
     ("kind", "limit"),
     [
         ("manifest", "manifest"), ("cmake", "cmake"), ("colcon_cmake", "cmake"), ("msg", "interface"),
-        ("cpp", "cpp"), ("flow_cpp", "cpp"), ("declared_cpp", "cpp"), ("python", "python"), ("setup_py", "python"),
+        ("cpp", "cpp"), ("flow_cpp", "cpp"), ("called_cpp", "cpp"), ("python", "python"), ("setup_py", "python"),
         ("flow_launch_python", "python"), ("launch_xml", "launch"), ("flow_launch_xml", "launch"),
         ("params", "parameters"), ("script", "script"), ("shell", "script"), ("pyproject", "settings"),
     ],

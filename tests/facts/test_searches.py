@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import lexical as cpp
 from rosimpact.impact.facts.kinds import decode, encode, search
-from rosimpact.impact.facts.searches import WordUse
+from rosimpact.impact.facts.searches import WordUse, declares_in_tf2, declares_type, opens_space
 from rosimpact.impact.facts.usage import Pattern, Rows, UsageTable
 
 TABLE = UsageTable({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
@@ -44,22 +44,33 @@ def test_what_rows_describe_in_text():
     assert [(use.label, use.line, use.column) for use in found.uses] == [("spin_once", 2, 7)]
 
 
-@pytest.mark.parametrize(
-    ("text", "types", "spaces", "tf2"),
-    [
-        ("class A;\n", {"A"}, set(), set()),
-        ("struct A : B {};\n", {"A", "B"}, set(), set()),
-        ("enum class A { X };\n", {"A"}, set(), set()),
-        ("typedef a::B C;\n", {"a", "C"}, set(), set()),
-        ("using C = a::B;\n", {"C"}, set(), set()),
-        ("ROS_DECLARE_MESSAGE(Twist)\n", {"Twist"}, set(), set()),
-        ("namespace tf2 {\nvoid fromMsg();\n", set(), {"tf2"}, {"namespace", "tf2", "void", "fromMsg"}),
-        ("template<> void doTransform(int);\n", set(), set(), {"template", "void", "doTransform", "int"}),
-    ],
-)
-def test_what_a_file_declares(text, types, spaces, tf2):
-    found = looked("declared_cpp", text, None)
-    assert (found.types, found.spaces, found.tf2) == (types, spaces, tf2)
+@pytest.mark.parametrize(("text", "declared", "others"), [
+    ("class A;\n", {"A"}, {"class"}),
+    ("subclass A;\nclassic B;\n", set(), {"A", "B"}),
+    ("struct A : B {};\n", {"A", "B"}, set()),
+    ("enum class A { X };\n", {"A"}, {"X"}),
+    ("typedef a::B C;\n", {"a", "C"}, {"B"}),
+    ("using C = a::B;\n", {"C"}, {"a", "B"}),
+    ("class A; B b; void f(C c);\nclass AB;\n", {"A", "AB"}, {"B", "C"}),
+    ("class A\n" + " " * 300 + "{\n", set(), {"A"}),
+    ("ROS_DECLARE_MESSAGE(Twist)\n", {"Twist"}, set()),
+])  # fmt: skip
+def test_which_types_a_file_declares(text, declared, others):
+    assert {name for name in declared | others if declares_type(text.encode(), name)} == declared
+
+
+def test_which_namespaces_a_file_opens():
+    text = b"namespace tf2 {\n}\nnamespace a::b {\n}\n// not namespaces\n"
+    assert [opens_space(text, name) for name in ("tf2", "a", "b", "namespaces")] == [True, True, False, False]
+
+
+@pytest.mark.parametrize(("text", "declared", "others"), [
+    ("namespace tf2 {\nvoid fromMsg();\n", {"fromMsg", "void"}, {"Msg"}),
+    ("template<> void doTransform(int);\n", {"doTransform"}, {"tf2"}),
+    ("namespace a {\nvoid fromMsg();\n", set(), {"fromMsg"}),
+])  # fmt: skip
+def test_which_names_a_file_declares_for_tf2(text, declared, others):
+    assert {name for name in declared | others if declares_in_tf2(text.encode(), name)} == declared
 
 
 @pytest.mark.parametrize(("text", "functions"), [
@@ -74,12 +85,12 @@ def test_what_a_file_declares(text, types, spaces, tf2):
     ("void f() { if (Arm::ready(1)) { g(); } Arm::raise(2); call(Arm::lower(3), [] { }); }\n", set()),
 ])  # fmt: skip
 def test_which_functions_of_classes_a_file_defines(text, functions):
-    assert looked("declared_cpp", text, None).functions == functions
+    assert looked("called_cpp", text, None).functions == functions
 
 
 def test_what_a_file_calls_without_a_receiver():
     text = "arm::normalize(1); arm.raise(2); arm->run(); Joint(3);\n"
-    assert looked("declared_cpp", text, None).called == {"normalize", "Joint", ".run"}
+    assert looked("called_cpp", text, None).called == {"normalize", "Joint", ".run"}
 
 
 def test_tables_that_differ_have_other_stamps():

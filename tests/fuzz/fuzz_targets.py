@@ -147,7 +147,7 @@ def _tables() -> dict[str, object]:
     """What searches are given to look for."""
     names = watched()
     rows = Rows([row for group in (*names.modules.values(), names.parameters) for row in group])
-    return {"searched_cpp": names.in_cpp, "searched_text": rows, "declared_cpp": None}
+    return {"searched_cpp": names.in_cpp, "searched_text": rows, "called_cpp": None}
 
 
 def _raise_again(kind: str, data: bytes) -> None:

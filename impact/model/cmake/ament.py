@@ -20,14 +20,13 @@ def package_name(run: Interpreter) -> str:
     return run.project or run.package
 
 
-@handles("ament_target_dependencies")
+@handles("ament_target_dependencies", least=1)
 def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_target_dependencies()."""
-    if args:
-        items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
-        draft = known(run, args[0])
-        note_signature(run, draft, args)
-        add_links(run, draft, items, "ament")
+    items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
+    draft = known(run, args[0])
+    note_signature(run, draft, args)
+    add_links(run, draft, items, "ament")
 
 
 _EXPORTS = {
@@ -127,18 +126,16 @@ def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[W
         run.new_target(f"{target}__{language}", "generated", target.at)
 
 
-@handles("rosidl_target_interfaces")
+@handles("rosidl_target_interfaces", least=2)
 def rosidl_target_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_target_interfaces(target interfaces typesupport), until Humble."""
-    if len(args) >= 2:
-        add_links(run, known(run, args[0]), [args[1]], "interfaces")
+    add_links(run, known(run, args[0]), [args[1]], "interfaces")
 
 
-@handles("rosidl_get_typesupport_target")
+@handles("rosidl_get_typesupport_target", least=3)
 def rosidl_get_typesupport_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_get_typesupport_target(variable interfaces typesupport)."""
-    if len(args) >= 3:
-        run.set_text(args[0], f"{args[1]}__{args[2]}", args[1].at)
+    run.set_text(args[0], f"{args[1]}__{args[2]}", args[1].at)
 
 
 @handles("rclcpp_components_register_nodes")
@@ -261,11 +258,10 @@ def ament_known_test(run: Interpreter, call: CommandCall, args: list[Word]) -> N
     """Commands about a test executable that is there already."""
 
 
-@handles("ament_vendor")
+@handles("ament_vendor", least=1)
 def ament_vendor(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_vendor(): downloads and builds a project."""
-    if args:
-        run.new_target(args[0], "external", args[0].at)
+    run.new_target(args[0], "external", args[0].at)
 
 
 @handles("ament_auto_find_build_dependencies", "ament_auto_find_test_dependencies")

@@ -321,12 +321,11 @@ def locate(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     )
 
 
-@handles("fetchcontent_declare")
+@handles("fetchcontent_declare", least=1)
 def fetchcontent_declare(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """FetchContent_Declare(): names a project that is downloaded while configuring."""
-    if args:
-        run.properties[f"FETCH {args[0].lower()}"] = CMakeValue((args[0],))
-        run.add_tools(args)
+    run.properties[f"FETCH {args[0].lower()}"] = CMakeValue((args[0],))
+    run.add_tools(args)
 
 
 @handles("fetchcontent_makeavailable", "fetchcontent_populate", "fetchcontent_getproperties")
@@ -344,12 +343,11 @@ def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[W
             draft.alias_of = ""
 
 
-@handles("externalproject_add")
+@handles("externalproject_add", least=1)
 def externalproject_add(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ExternalProject_Add(): a custom target that downloads and builds."""
-    if args:
-        run.new_target(args[0], "external", args[0].at)
-        run.add_tools(args)
+    run.new_target(args[0], "external", args[0].at)
+    run.add_tools(args)
 
 
 @handles("externalproject_get_property")

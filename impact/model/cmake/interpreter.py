@@ -98,6 +98,13 @@ _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}
 _ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
 
 
+# What is collected under the names that Build has for it.
+_COLLECTED = (
+    *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
+    *("message_files", "made", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
+)
+
+
 class Interpreter:
     """One run over one package. Command handlers read and write it; run() gives the Build."""
 
@@ -251,28 +258,12 @@ class Interpreter:
             standard_default_only=default_only,
             standard_by_flag=by_flag,
             standards=tuple((number, at, conditions) for number, at, _, _, conditions in self.standards),
-            macros=tuple(self.macros),
-            found=tuple(self.found),
             targets=self.targets.finish(),
-            installs=tuple(self.installs),
-            exports=tuple(self.exports),
-            generated=tuple(self.generated),
-            uses=tuple(self.uses),
-            include_dirs=tuple(self.include_dirs),
-            links=tuple(self.links),
             catkin_package=self.catkin_package,
             ament_package=self.ament_package,
-            unresolved=tuple(self.unresolved),
-            files=tuple(self.files),
-            message_files=tuple(self.message_files),
             project_by_variable=self._project_by_variable(),
-            made=tuple(self.made),
-            handed_on=tuple(self.handed_on),
             before_catkin_package=self.before_catkin_package,
-            refused=tuple(self.refused),
-            read_elsewhere=tuple(self.read_elsewhere),
-            asked=tuple(self.asked),
-            stops=tuple(self.stops),
+            **{name: tuple(getattr(self, name)) for name in _COLLECTED},
         )
 
     def _project_by_variable(self) -> bool:

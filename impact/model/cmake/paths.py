@@ -167,9 +167,8 @@ def aux_source_directory(run: Interpreter, call: CommandCall, args: list[Word]) 
     run.set(args[1], (*before, *(word(run.absolute(path), args[0].at) for path in sources)))
 
 
-@handles("configure_file")
+@handles("configure_file", least=2)
 def configure_file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """configure_file(): a generated file."""
-    if len(args) >= 2:
-        value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
-        note_made(run, run.resolve(args[1], value.text if value is not None else None))
+    value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
+    note_made(run, run.resolve(args[1], value.text if value is not None else None))

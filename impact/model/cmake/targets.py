@@ -159,14 +159,13 @@ def add_links(run: Interpreter, draft: TargetDraft, items: list[Word], how: str,
                 draft.links[Link(text, how, run.place(part.at), visibility, run.under(part))] = None
 
 
-@handles("target_link_libraries", "swig_link_libraries")
+@handles("target_link_libraries", "swig_link_libraries", least=1)
 def target_link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_link_libraries(), old and new keywords."""
-    if args:
-        items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
-        draft = known(run, args[0])
-        note_signature(run, draft, args)
-        add_links(run, draft, items, "link")
+    items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
+    draft = known(run, args[0])
+    note_signature(run, draft, args)
+    add_links(run, draft, items, "link")
 
 
 def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> None:
@@ -184,15 +183,14 @@ def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> No
     draft.signatures.setdefault(keyword, run.under(args[0]))
 
 
-@handles("target_include_directories")
+@handles("target_include_directories", least=1)
 def target_include_directories(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_include_directories()."""
-    if args:
-        items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
-        draft = known(run, args[0])
-        add_links(run, draft, items, "include")
-        for found in _INSTALLED.findall(" ".join(items)):
-            draft.installed_includes.update(dict.fromkeys(run.shown(folder) for folder in found.split()))
+    items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
+    draft = known(run, args[0])
+    add_links(run, draft, items, "include")
+    for found in _INSTALLED.findall(" ".join(items)):
+        draft.installed_includes.update(dict.fromkeys(run.shown(folder) for folder in found.split()))
 
 
 @handles("include_directories")
@@ -215,19 +213,17 @@ def link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
             run.links[Link(run.shown(part), "link", run.place(part.at), "", run.under(part))] = None
 
 
-@handles("rosbuild_link_boost", "target_link_boost")
+@handles("rosbuild_link_boost", "target_link_boost", least=1)
 def link_boost(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosbuild_link_boost(): Boost libraries by component."""
-    if args:
-        items = [word(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
-        add_links(run, known(run, args[0]), items, "link")
+    items = [word(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
+    add_links(run, known(run, args[0]), items, "link")
 
 
-@handles("add_dependencies")
+@handles("add_dependencies", least=1)
 def add_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_dependencies()."""
-    if args:
-        add_links(run, known(run, args[0]), split_words(args[1:]), "order")
+    add_links(run, known(run, args[0]), split_words(args[1:]), "order")
 
 
 def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
@@ -288,28 +284,26 @@ def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> 
             note_written(run, item)
 
 
-@handles("target_compile_definitions")
+@handles("target_compile_definitions", least=1)
 def target_compile_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_compile_definitions()."""
-    if args:
-        draft = known(run, args[0])
-        for item in split_words(args[1:]):
-            if item not in _VISIBILITY:
-                draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
-                note_macro(run, item, str(args[0]))
+    draft = known(run, args[0])
+    for item in split_words(args[1:]):
+        if item not in _VISIBILITY:
+            draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
+            note_macro(run, item, str(args[0]))
 
 
-@handles("target_compile_options", "target_compile_features")
+@handles("target_compile_options", "target_compile_features", least=1)
 def target_compile_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """target_compile_options() and target_compile_features(), of which the C++ standard is kept."""
-    if args:
-        draft = known(run, args[0])
-        seen = "PUBLIC"
-        for item in args[1:]:
-            seen = str(item) if item in _VISIBILITY else seen
-            draft.standard = max(draft.standard, flag_standard(item), feature_standard(item))
-            if seen != "PRIVATE":
-                draft.public_standard = max(draft.public_standard, feature_standard(item))
+    draft = known(run, args[0])
+    seen = "PUBLIC"
+    for item in args[1:]:
+        seen = str(item) if item in _VISIBILITY else seen
+        draft.standard = max(draft.standard, flag_standard(item), feature_standard(item))
+        if seen != "PRIVATE":
+            draft.public_standard = max(draft.public_standard, feature_standard(item))
 
 
 @handles("add_compile_options", "add_definitions")
@@ -417,13 +411,12 @@ def add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_test() makes no target."""
 
 
-@handles("generate_export_header")
+@handles("generate_export_header", least=1)
 def generate_export_header(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_export_header(): a header in the build folder."""
-    if args:
-        base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
-        value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
-        note_made(run, run.resolve(base, value.text if value is not None else None))
+    base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
+    value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
+    note_made(run, run.resolve(base, value.text if value is not None else None))
 
 
 _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})

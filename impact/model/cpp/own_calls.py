@@ -7,14 +7,14 @@ import posixpath
 from collections.abc import Callable, Collection, Iterator, Mapping
 
 from ....edges.reach import Reach
-from ...facts.searches import DeclaredCpp
+from ...facts.searches import CalledCpp
 
 
 def list_own_calls(
     sources: Mapping[str, Collection[str]],
     included: Callable[[str], Collection[str]],
     spoken: Callable[[str], frozenset[str]],
-    declared: Callable[[Collection[str]], Mapping[str, DeclaredCpp]],
+    declared: Callable[[Collection[str]], Mapping[str, CalledCpp]],
 ) -> Iterator[tuple[str, str, str]]:
     """Source, the other source that defines a function which it seems to use, and that function, `Class::function`.
 

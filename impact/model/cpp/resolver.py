@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from ....edges.memory import cached_method
 from ...facts.cpp.code import CppCode
@@ -18,6 +18,8 @@ from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
 from ..api import Vocabulary
 from ..members import InterfaceScope, NamedInterface, section_of
 from ..members import MemberType as InterfaceType
+
+T = TypeVar("T")
 
 _POINTERS = frozenset(("shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr", "optional", "unique_lock"))
 _MAKERS = frozenset(("make_shared", "make_unique", "allocate_shared"))
@@ -99,6 +101,11 @@ class KnownFile:
     def mentions(self, word: str) -> bool:
         """Whether the word may stand in it."""
         return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
+
+    def mentions_any(self, names: frozenset[str]) -> bool:
+        """Whether one of some words may stand in it."""
+        rest = [name for name in names if len(name) < 4] if self.words else names
+        return not names.isdisjoint(self.words) or any(map(self.code.mentions, rest))
 
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
@@ -277,7 +284,7 @@ class Resolver:
                 for base in one.bases:
                     outer = parse_type(base).outer.removeprefix("::")
                     if outer.rpartition("::")[2] == head and outer != name:
-                        return self._nested(self.type_of(base, _around(one), depth + 1), rest, place, depth)
+                        return self._nested(self.type_of(base, around_class(one), depth + 1), rest, place, depth)
         own = self._own_class(name, place)
         if own is not None:
             return own
@@ -318,7 +325,7 @@ class Resolver:
             for member in one.members.get(head, ())
             if member.kind == "alias"
         }
-        return next(iter(found)) if len(found) == 1 else None
+        return _only(found)
 
     def _nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
         """What `alias::rest` is."""
@@ -398,13 +405,13 @@ class Resolver:
         yield one
         for base in one.bases:
             parts = parse_type(base)
-            own = self._own_class(parts.outer, _around(one))
+            own = self._own_class(parts.outer, around_class(one))
             if own is not None and own.name != one.name:
                 yield from self._find_line(own.name, parts.arguments or (), depth + 1)
 
     def bases(self, class_: CppClass) -> list[tuple[str, CppType | None]]:
         """The bases of a class of the package, with what they are."""
-        return [(base, self.type_of(base, _around(class_))) for base in class_.bases]
+        return [(base, self.type_of(base, around_class(class_))) for base in class_.bases]
 
     def own_member(self, class_: str, word: str, depth: int = 0) -> tuple[str, tuple[str, ...]] | None:
         """The changing name of another package that a member of an own class is, by its bases, and the packages in
@@ -436,7 +443,7 @@ class Resolver:
             known
             for one in self.homes(type_.name)
             for inner in one.bases
-            for known in self.known_bases(inner, _around(one), depth + 1)
+            for known in self.known_bases(inner, around_class(one), depth + 1)
         ]
 
     def value_of(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
@@ -515,14 +522,14 @@ class Resolver:
         for one in self.line_of_own(place.owner) if place.owner and "::" not in name.text else ():
             written = {each.type for each in one.members.get(name.text, ()) if each.kind == "variable"}
             if written:
-                return written.pop() if len(written) == 1 else ""
+                return _only(written) or ""
         return ""
 
     def _declared_type(self, those: Iterable[Declaration], place: CodePlace, kind: str) -> CppType | None:
         """What several declarations of one name give, where they agree."""
         found = {self.type_of(one.type, place) if one.type and "auto" not in one.type else None
                  for one in those if one.kind == kind}  # fmt: skip
-        return next(iter(found)) if len(found) == 1 else None
+        return _only(found)
 
     def _of_member(self, expr: Expr, place: CodePlace, depth: int, called: bool = False) -> CppType | None:
         type_ = self.value_of(expr.parts[0], place, depth + 1)
@@ -552,9 +559,9 @@ class Resolver:
         for one in self.line_of_own(type_.name):
             if name in one.members:
                 found = self._declared_type(one.members[name], _inside(one), kind)
-                if found is None and one.template and type_.arguments:
-                    written = {each.type for each in one.members[name] if each.kind == kind}
-                    found = self._substituted(written, one.template, type_.arguments, place)
+                written = _only({each.type for each in one.members[name] if each.kind == kind})
+                if found is None and one.template and type_.arguments and written is not None:
+                    return self.type_of(_filled_text(written, one.template, type_.arguments), place)
                 return found
         return self._inherited(type_.name, name, kind)
 
@@ -572,13 +579,7 @@ class Resolver:
         if self._elsewhere is None:
             self._elsewhere = Resolver((), self.vocabulary, None)
         found = {self._elsewhere.type_of(each, CodePlace(around, "", False)) for each in types}
-        return next(iter(found)) if len(found) == 1 else None
-
-    def _substituted(
-        self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: CodePlace
-    ):
-        """A type that is written with the parameters of a template."""
-        return self.type_of(_filled_text(written.pop(), parameters, arguments), place) if len(written) == 1 else None
+        return _only(found)
 
     def _of_call(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         callee = expr.parts[0]
@@ -633,12 +634,15 @@ class Resolver:
             for one in file.names.get(last, ())
             if one.kind == "function" and (not outer or f"::{one.scope}".endswith(f"::{outer}"))
         }
-        if found:
-            return next(iter(found)) if len(found) == 1 else None
-        return None
+        return _only(found)
 
 
 _NOWHERE = CodePlace("", "", False)
+
+
+def _only(found: set[T]) -> T | None:
+    """The one thing that was found; None where there is none, or several."""
+    return next(iter(found)) if len(found) == 1 else None
 
 
 def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
@@ -663,6 +667,6 @@ def _inside(class_: CppClass) -> CodePlace:
     return CodePlace(class_.name, class_.name, False)
 
 
-def _around(class_: CppClass) -> CodePlace:
+def around_class(class_: CppClass) -> CodePlace:
     """Where the bases of a class are written."""
     return CodePlace(class_.name.rpartition("::")[0], "", False)

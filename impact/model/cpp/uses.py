@@ -2,23 +2,31 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
+from functools import lru_cache
 
-from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
+from ....edges.memory import cached_method
+from ...facts.cpp.lexical import KEYWORDS
+from ...facts.cpp.schema import CodePlace, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import template_arguments
 from ...targets.surface.overrides import describe_override
 from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
-from .resolver import CppType, KnownFile, Resolver
+from .resolver import CppType, KnownFile, Resolver, around_class
 
-_LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
-_SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
+# Both are matched backwards from what stands behind them.
+_LAST_WORD = re.compile(r"\w*[A-Za-z_]")
+_OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
+# What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
+_NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
+_SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
 # What the text of arguments has where one of them shows itself to be something that can be refused.
 _SHOWN = {
     shown: re.compile(pattern)
     for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("qos", r"(?i:qos)"),
-        ("profile", r"(?i:qos|profile)"),
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"),
+        ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
+        ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
     )
 }  # fmt: skip
 # The types of quality of service: those of rclcpp, and the structure of rmw which they replaced.
@@ -30,7 +38,7 @@ _DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
-_FARTHEST = 4000
+_FARTHEST, _FAR = 4000, 160
 _INTERFACES = ("::msg", "::srv", "::action")
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
 _TYPES = CLASSES | {"alias", "enum"}
@@ -64,20 +72,21 @@ class ApiUses:
         while before and text[before - 1] in " \t\n":
             before -= 1
         if word in ASSIGNING:
-            root = _LAST_WORD.search(text, max(0, before - 80), before)
-            if root is None:
+            root = _ahead(_LAST_WORD, text, before)
+            if not root:
                 return text[before - 1 : before] == "]"
             speakers = vocabulary.speakers_of(word)
-            return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
+            return root.endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
         sign = text[before - 2 : before]
         if sign == "->" or sign.endswith("."):
-            return vocabulary.of_classes(word) and self._may_be_any(word, text, at + len(word))
+            return vocabulary.of_classes(word) and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
         if sign != "::":
-            return self._may_be_any(word, text, at + len(word))
-        scopes = _SCOPES.search(text, max(0, before - 160), before)
-        if scopes is None:
-            return True  # behind template arguments, or of the global namespace
-        scope = "".join(scopes.group().split()).removesuffix("::")
+            return not _is_declared(text, before, at) and self._may_be_any(self._named_bare(word), text, at + len(word))
+        scopes = _ahead(_SCOPES, text, before)
+        if not scopes:  # behind template arguments, or of the global namespace
+            of_std = _OF_STD.search(text, max(0, before - _FAR), before) is not None
+            return not of_std and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
+        scope = "".join(scopes.split()).removesuffix("::")
         head = scope.partition("::")[0]
         if head == "std":
             return False
@@ -90,12 +99,25 @@ class ApiUses:
             return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
         if known is not None or scope.endswith(_INTERFACES):
             return False
-        return (scope in vocabulary.classes or not vocabulary.has_space(head)) and self._may_be_any(word, text, end)
+        if scope not in vocabulary.classes and vocabulary.has_space(head):
+            return False
+        return self._may_be_any(vocabulary.by_last(word), text, end)
 
-    def _may_be_any(self, word: str, text: str, end: int) -> bool:
-        """Whether any of the names that end so may be used in a way that differs between versions."""
-        names = (self.vocabulary.names[name] for name in self.vocabulary.by_last(word))
-        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in names)
+    def _may_be_any(self, names: Iterable[str], text: str, end: int) -> bool:
+        """Whether one of some names that all end alike may be used in a way that differs between versions."""
+        every = map(self.vocabulary.names.__getitem__, names)
+        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in every)
+
+    @cached_method
+    def _named_bare(self, word: str) -> list[str]:
+        """The names that a word without an object or scopes before it may be: what is around them has to be near."""
+        owners = {name: name.rpartition("::")[0] for name in self.vocabulary.by_last(word)}
+        return [n for n, owner in owners.items() if not owner or self._is_near(self.vocabulary.speakers(owner))]
+
+    @cached_method
+    def _is_near(self, names: frozenset[str]) -> bool:
+        """Whether one of some names stands in the file or in a header of the package that it reaches."""
+        return any(file.mentions_any(names) for file in self.resolver.files)
 
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
@@ -292,12 +314,15 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
-        virtual = {word for word in words if self.vocabulary.is_virtual(word) and code.may_declare(word)}
+        virtual = {
+            word for word in words
+            if self._is_near(self.vocabulary.speakers_of_virtual(word)) and code.may_declare(word)
+        }  # fmt: skip
         for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
-            lines = [self.resolver.known_bases(base, around_(class_)) for base in class_.bases] if declared else []
+            lines = [self.resolver.known_bases(base, around_class(class_)) for base in class_.bases] if declared else []
             for word in declared:
                 for method in class_.members[word]:
                     if method.kind != "function" or "static" in method.traits:
@@ -329,7 +354,7 @@ class ApiUses:
             have = {name for one in own for name in one.members}
             for one in own:
                 for base in one.bases:
-                    type_ = self.resolver.type_of(base, around_(one))
+                    type_ = self.resolver.type_of(base, around_class(one))
                     if type_ is None or type_.own or not type_.name:
                         continue
                     for name in self.vocabulary.pure(type_.name):
@@ -339,6 +364,19 @@ class ApiUses:
 
     def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
+
+
+def _ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
+    """What stands before an offset of a text, empty where it does not match. pattern: of the same backwards."""
+    found = pattern.match(text[max(0, end - _FAR) : end][::-1])
+    return found[0][::-1] if found is not None else ""
+
+
+def _is_declared(text: str, before: int, at: int) -> bool:
+    """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
+    In capitals may be a macro, which is no type."""
+    last = _ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
+    return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
 
 
 def _may_differ(known: ChangingName, text: str, at: int) -> bool:
@@ -367,6 +405,7 @@ def _may_differ(known: ChangingName, text: str, at: int) -> bool:
     return known.differs("call", count, shown, templated)
 
 
+@lru_cache(maxsize=64)  # every name that a word may be asks about the same place
 def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
     """How many arguments a bracket gives that opens at an offset (-1 where it opens something else), and their text;
     None where that takes a parser."""
@@ -407,11 +446,6 @@ def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
 def _is_among(class_: str, names: Collection[str]) -> bool:
     """Whether a class is one of those that are named, in full or without the namespaces around."""
     return any(f"::{class_}".endswith(f"::{name}") for name in names)
-
-
-def around_(class_: CppClass) -> CodePlace:
-    """Where the bases of a class are written."""
-    return CodePlace(class_.name.rpartition("::")[0], "", False)
 
 
 def parameter_type(parameter: WrittenParameter | str) -> str:
@@ -482,4 +516,3 @@ class MemberUses:
 
 def _members(file: KnownFile, name: str):
     return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]
-
