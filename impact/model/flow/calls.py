@@ -43,11 +43,11 @@ class Calls:
     def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
-        described: dict[int, list[FlowCall]] = {}
+        described: dict[Fn, list[FlowCall]] = {}
         for fn, call in self.code.calls_named(self.table.calls):
-            described.setdefault(id(fn), []).append(call)
+            described.setdefault(fn, []).append(call)
         for fn in self.code.functions:
-            for call in described.get(id(fn), ()):
+            for call in described.get(fn, ()):
                 use = self.use_of(fn, call)
                 if use is not None:
                     found.append(use)

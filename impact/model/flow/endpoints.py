@@ -37,12 +37,12 @@ _ROLES: dict[str, Role] = {
 
 
 class TemplateType(NamedTuple):
-    """A type that an endpoint in a template is of: where a class is made, or a function (by its id()) runs; always for
+    """A type that an endpoint in a template is of: where a class is made, or a function runs; always for
     neither."""
 
     type: str
     cls: str = ""
-    fn: int = 0
+    fn: Fn | None = None
 
 
 class Site(NamedTuple):
@@ -270,7 +270,7 @@ class Sites:
     ) -> tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]:
         """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
         it; and what it wraps, by that call: the assignments."""
-        known = self._held.get(id(fn))
+        known = self._held.get(fn)
         if known is not None:
             return known
         # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
@@ -286,7 +286,7 @@ class Sites:
             for part in each.value.parts if each.value.kind == "make" else ():
                 if part.kind == "call":
                     wrapped.setdefault((part.text, part.parts), []).append(each)
-        self._held[id(fn)] = put, wrapped
+        self._held[fn] = put, wrapped
         return put, wrapped
 
     def _is_publisher(self, value: FlowExpr, fn: Fn) -> bool:
@@ -610,7 +610,7 @@ class Sites:
             if place is None:
                 continue
             found: list[Fn] = []
-            callers = list(self.code.callers.get(id(one), ()))
+            callers = list(self.code.callers.get(one, ()))
             for caller, call in callers:
                 positional = [argument for argument in call.arguments if argument.kind != "keyword"]
                 if place[0] < len(positional):
@@ -734,7 +734,7 @@ class Sites:
     def _given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
         """The namespaces of the handles that are passed for a parameter."""
         owner = self.code.owner_of(fn)
-        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(id(fn), ())]
+        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(fn, ())]
         if owner is not None and tail(fn.name) == tail(owner.name):
             makers += self.code.constructions.get(owner.name, ())
             makers += self.values.bases_made.get(owner.name, ())
@@ -792,12 +792,12 @@ class Sites:
         return found
 
     @cached_property
-    def made_in(self) -> dict[int, list[Site]]:
-        """Sites by the id() of the function that makes and returns them."""
-        found: dict[int, list[Site]] = {}
+    def made_in(self) -> dict[Fn, list[Site]]:
+        """Sites by the function that makes and returns them."""
+        found: dict[Fn, list[Site]] = {}
         for site in self.endpoints:
             if site.use.call.returned:
-                found.setdefault(id(site.use.fn), []).append(site)
+                found.setdefault(site.use.fn, []).append(site)
         return found
 
     @cached_property
@@ -820,17 +820,17 @@ class Sites:
 
     def _through(self, direct: list[Statement]) -> Iterator[Statement]:
         """Calls of the code's own methods that are called as the framework's, and publish."""
-        inside: dict[int, list[Statement]] = {}
+        inside: dict[Fn, list[Statement]] = {}
         for statement in direct:
-            inside.setdefault(id(statement.use.fn), []).append(statement)
+            inside.setdefault(statement.use.fn, []).append(statement)
         names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
         for fn, call in self.code.calls_named(names):
             for target in self.code.targets(call.callee, fn):
-                inner = inside.get(id(target)) or [
+                inner = inside.get(target) or [
                     statement
                     for further in target.facts.calls
                     for last in self.code.targets(further.callee, target)
-                    for statement in inside.get(id(last), ())
+                    for statement in inside.get(last, ())
                 ]
                 if inner:
                     sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
@@ -876,7 +876,7 @@ class Sites:
                 for each in target.facts.assignments:
                     if each.operator == "return" and each.value.kind == "name":
                         yield from self.publishers(each.value.text, target, depth + 1)
-                yield from (site for site in self.made_in.get(id(target), ()) if site.role == "publisher")
+                yield from (site for site in self.made_in.get(target, ()) if site.role == "publisher")
             if tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
                 yield from self.publishers(around(receiver.removesuffix("()")), fn, depth + 1)
             return
@@ -914,8 +914,8 @@ class Sites:
                 if place is None:
                     continue
                 for caller, arguments in [
-                    *((caller, call.arguments) for caller, call in code.callers.get(id(one), ())),
-                    *code.bound.get(id(one), ()),
+                    *((caller, call.arguments) for caller, call in code.callers.get(one, ())),
+                    *code.bound.get(one, ()),
                 ]:  # fmt: skip
                     positional = [argument for argument in arguments if argument.kind != "keyword"]
                     if place[0] < len(positional) and positional[place[0]].kind == "name":

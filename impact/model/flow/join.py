@@ -56,7 +56,7 @@ class Running(NamedTuple):
 
     program: StartableProgram
     node: Node
-    functions: set[int]
+    functions: set[Fn]
     classes: set[str]
     values: FlowValues
     instance: Instance | None = None
@@ -99,7 +99,7 @@ class Join:
         # With who runs it, so that nothing else comes by the same id().
         self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
-        self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
+        self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
     def running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
@@ -112,13 +112,13 @@ class Join:
             if program.kind in ("executable", "script"):
                 functions, classes = self.reach.of(program.roots)
                 if not program.roots:
-                    functions = {id(fn) for fn in self.code.functions if fn.source.path in program.files}
+                    functions = {fn for fn in self.code.functions if fn.source.path in program.files}
             else:
                 cls = next(
                     (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
                 )
                 functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
-            named = [use for use in self.calls.doing("node") if id(use.fn) in functions]
+            named = [use for use in self.calls.doing("node") if use.fn in functions]
             found.append(Running(program, self._node(program, named), functions, classes, self.values))
         return found
 
@@ -232,46 +232,46 @@ class Join:
             index = rows[index].outer
         return tuple(GuardAt(g.kind, g.text, fn.source.path, g.line, fn.name) for g in reversed(found))
 
-    def _triggers(self) -> dict[int, list[Trigger]]:
-        found: dict[int, list[Trigger]] = {}
+    def _triggers(self) -> dict[Fn, list[Trigger]]:
+        found: dict[Fn, list[Trigger]] = {}
         for site in self.sites.endpoints:
             names = sorted({value.text for value in site.names if value.text}) or [site.written]
             for fn in site.callbacks:
                 trigger = Trigger(_TRIGGERS[site.role], " or ".join(names), site.use.fn.source.path, site.use.call.line)
-                found.setdefault(id(fn), []).append(trigger)
+                found.setdefault(fn, []).append(trigger)
         for timer in self.sites.timers:
             for fn in timer.callbacks:
                 use = timer.use
-                found.setdefault(id(fn), []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
+                found.setdefault(fn, []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
         return found
 
-    def ways(self, fn: Fn, functions: set[int] | None = None) -> list[Way]:
+    def ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
         leading = self._leads_to(fn)
-        key = (id(fn), leading if functions is None else leading & functions)
+        key = (fn, leading if functions is None else leading & functions)
         known = self._ways.get(key)
         if known is None:
             known = self._ways[key] = self._walked(fn, functions, 0, ())
         return known
 
     @cached_method
-    def _leads_to(self, fn: Fn) -> frozenset[int]:
-        """The functions from which a function may be reached, by their id()."""
+    def _leads_to(self, fn: Fn) -> frozenset[Fn]:
+        """The functions from which a function may be reached."""
 
         def above(one: Fn) -> list[Fn]:
             around = self.code.enclosing(one)
-            callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
+            callers = [caller for caller, _ in self.code.callers.get(one, ())]
             return callers if around is None else [*callers, around]
 
-        return frozenset(map(id, walk(above(fn), above)))
+        return frozenset(walk(above(fn), above))
 
-    def _walked(self, fn: Fn, functions: set[int] | None, depth: int, seen: tuple[int, ...]) -> list[Way]:
-        found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]
-        if id(fn) in seen or depth > _DEEPEST:
+    def _walked(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
+        found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
+        if fn in seen or depth > _DEEPEST:
             return found
-        here = (*seen, id(fn))
-        for caller, call in self.code.callers.get(id(fn), ()):
-            if functions is not None and id(caller) not in functions:
+        here = (*seen, fn)
+        for caller, call in self.code.callers.get(fn, ()):
+            if functions is not None and caller not in functions:
                 continue
             own = self.guards(caller, call.guard)
             for way in self._walked(caller, functions, depth + 1, here):
@@ -495,14 +495,14 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function: dict[int, list[Owner]] = {}
+        self._by_function: dict[Fn, list[Owner]] = {}
         for one in running:
             for number in one.functions:
                 self._by_function.setdefault(number, []).append(one)
 
     def of(self, use: FrameworkCall) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
-        found = self._by_function.get(id(use.fn), [])
+        found = self._by_function.get(use.fn, [])
         if self.launched or found:
             return found
         built = [one for one in self.running if use.fn.source.path in one.program.files]

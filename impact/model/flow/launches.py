@@ -211,7 +211,7 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
     """The full names that a node's code uses, before remapping."""
     bare = one._replace(instance=instance._replace(remaps=()))
     for site in join.sites.endpoints:
-        if id(site.use.fn) in one.functions:
+        if site.use.fn in one.functions:
             values = site.names
             if not site.implied:
                 values = join.sites.names(site.use, site.prefix, one.values)
@@ -222,7 +222,7 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
 def _parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
     for use in join.calls.doing("parameter"):
-        if id(use.fn) in one.functions:
+        if use.fn in one.functions:
             found.update(value.text for value in join.asked(use) if value.text)
     return found
 

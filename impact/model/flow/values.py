@@ -58,13 +58,12 @@ class FlowValues:
         calls: Calls,
         settings: Mapping[str, str] | None = None,
         arguments: Sequence[str] | None = None,
-        way: Mapping[int, FlowCall] | None = None,
-        within: Collection[int] | None = None,
+        way: Mapping[Fn, FlowCall] | None = None,
+        within: Collection[Fn] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
         arguments: of the command line, without the program's name; None where they are not known. way: the only call
-        through which a function is reached, by the function's id(). within: the functions that run, by their id()s, all
-        when None."""
+        through which a function is reached, by the function. within: the functions that run, all when None."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self._left = _MOST_STEPS
@@ -74,12 +73,12 @@ class FlowValues:
         """The same code where a launch sets parameters and gives arguments."""
         return self._other(settings, arguments, self.way, self.within)
 
-    def run(self, functions: Collection[int]) -> FlowValues:
-        """The same code where only some functions run, by their id()s: what others pass to them does not count."""
+    def run(self, functions: Collection[Fn]) -> FlowValues:
+        """The same code where only some functions run: what others pass to them does not count."""
         return self._other(self.settings, self.arguments, self.way, functions)
 
-    def called(self, way: Mapping[int, FlowCall]) -> FlowValues:
-        """The same code as far as it is reached through some calls, by the id() of the function called."""
+    def called(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
+        """The same code as far as it is reached through some calls, by the function called."""
         return self._other(self.settings, self.arguments, way, self.within) if way else self
 
     def _other(self, *given) -> FlowValues:
@@ -222,7 +221,7 @@ class FlowValues:
                 for member in cls.facts.members:
                     if cls.name == variable.owner and member.name == variable.name and member.value is not None:
                         holder = next(iter(self.code.functions_of_class(cls.name)), fn)
-                        if holder.source is cls.source or member.value.kind == "text":
+                        if holder.source.path == cls.source.path or member.value.kind == "text":
                             yield from self._of(member.value, holder, member.line, seen)
         elif variable.kind == "global":
             yield from self._constant(variable, fn, seen)
@@ -288,8 +287,8 @@ class FlowValues:
     def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter."""
         number = 0
-        only = self.way.get(id(fn))
-        for caller, call in self.code.callers.get(id(fn), ()):
+        only = self.way.get(fn)
+        for caller, call in self.code.callers.get(fn, ()):
             if (only is not None and call is not only) or not self._runs(caller):
                 continue
             argument = _argument(call.arguments, place, name)
@@ -315,7 +314,7 @@ class FlowValues:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _runs(self, fn: Fn) -> bool:
-        return self.within is None or id(fn) in self.within
+        return self.within is None or fn in self.within
 
     @cached_property
     def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
@@ -382,12 +381,12 @@ class FlowValues:
                 return
         returned = False
         for target in self.code.targets(callee, fn):
-            if ("returns", id(target)) in seen:
+            if ("returns", target) in seen:
                 continue
             for each in target.facts.assignments:
                 if each.operator == "return":
                     returned = True
-                    yield from self._of(each.value, target, each.line, (*seen, ("returns", id(target))))
+                    yield from self._of(each.value, target, each.line, (*seen, ("returns", target)))
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
