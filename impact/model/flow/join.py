@@ -96,8 +96,9 @@ class Join:
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
+        # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
         # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
+        self._sites_of: dict[tuple, list[tuple[Running, dict[str, str | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
@@ -129,7 +130,6 @@ class Join:
         return self._started[1]
 
     def _start(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
-        programs = self.running()
         found: list[Running] = []
         missing: list[Unresolved] = []
         for start in launch.started:
@@ -142,7 +142,7 @@ class Join:
                 reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
                 missing.append(Unresolved("started node", reasons or "its executable is not known", *at, written))
                 continue
-            fitting = [one for one in programs if self._starts(one.program, start)]
+            fitting = self._fitting(start)
             if not fitting:
                 reason = f"no code of `{start.package.shown}` here is `{what}`"
                 if start.kind != "container":
@@ -153,8 +153,8 @@ class Join:
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
             )  # fmt: skip
-            arguments = [argument.value for argument in start.arguments]
-            known = None if None in arguments else [one for one in arguments if one is not None]
+            arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
+            known = arguments if len(arguments) == len(start.arguments) else None
             values = self.values.under(instance.settings, known)
             found.append(one._replace(node=node, instance=instance, values=values))
         return found, missing
@@ -179,17 +179,23 @@ class Join:
             return program.plugin == wanted or (same and tail(program.plugin) == tail(wanted))
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
-    def _starts(self, program: StartableProgram, start: Started) -> bool:
+    @cached_property
+    def _by_package(self) -> dict[str, list[Running]]:
+        found: dict[str, list[Running]] = {}
+        for one in self._running:
+            found.setdefault(one.program.package, []).append(one)
+        return found
+
+    def _fitting(self, start: Started) -> list[Running]:
+        """The programs that a launch may mean."""
+        package, plugin = start.package.value, start.plugin.value
         # pluginlib knows nodelets of all packages, and a launch file names that of the loader beside them.
-        anywhere = bool(start.plugin.value) and start.package.value == "nodelet"
-        if not anywhere and start.package.value not in (None, program.package):
-            return False
-        if start.plugin.value:
-            return bool(program.plugin) and self._is_plugin(program, start.plugin.value)
-        executable = start.executable.value or ""
-        return bool(program.executable) and executable in (
-            program.executable, program.executable.removesuffix(".py"),
-        )  # fmt: skip
+        anywhere = package is None or (bool(plugin) and package == "nodelet")
+        programs = self._running if anywhere else self._by_package.get(package, [])
+        if plugin:
+            return [one for one in programs if one.program.plugin and self._is_plugin(one.program, plugin)]
+        named = ((one, one.program.executable) for one in programs if one.program.executable)
+        return [one for one, name in named if start.executable.value in (name, name.removesuffix(".py"))]
 
     def _kinds(self, cls) -> frozenset[str]:
         return self.calls.kinds_of(
@@ -381,15 +387,20 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        key = (id(site.use), id(owner.values), id(owner.functions))
-        if key not in self._sites_of:
-            # What code that the node does not run passes to its functions is none of its names.
-            names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
-            if all(name.text is None for name in names):
-                names = self.sites.names(site.use, site.prefix, owner.values)
-            type_ = site.type or self.sites.type_of(site.use, owner.values)
-            self._sites_of[key] = owner, site._replace(names=names, type=type_)
-        return self._sites_of[key][1]
+        settings, arguments = owner.values.settings, owner.values.arguments
+        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments), [])
+        for _, rests_on, found in known:
+            if all(settings.get(name) == value for name, value in rests_on.items()):
+                return found
+        self.values.asked.clear()
+        # What code that the node does not run passes to its functions is none of its names.
+        names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
+        if all(name.text is None for name in names):
+            names = self.sites.names(site.use, site.prefix, owner.values)
+        type_ = site.type or self.sites.type_of(site.use, owner.values)
+        found = site._replace(names=names, type=type_)
+        known.append((owner, dict(self.values.asked), found))
+        return found
 
     def _endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use

@@ -57,7 +57,7 @@ class FlowValues:
         self,
         calls: Calls,
         settings: Mapping[str, str] | None = None,
-        arguments: Sequence[str] | None = None,
+        arguments: tuple[str, ...] | None = None,
         way: Mapping[Fn, FlowCall] | None = None,
         within: Collection[Fn] | None = None,
     ):
@@ -68,8 +68,10 @@ class FlowValues:
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
+        # Settings that were asked for, by name, with what they are.
+        self.asked: dict[str, str | None] = {}
 
-    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> FlowValues:
+    def under(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments."""
         return self._other(settings, arguments, self.way, self.within)
 
@@ -85,7 +87,7 @@ class FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
-        other._budget = self._budget
+        other._budget, other.asked = self._budget, self.asked
         return other
 
     def of(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -394,7 +396,9 @@ class FlowValues:
         """The default of the parameter that a use declares or reads."""
         names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
         name = names[0] if names and names[0] is not None else ""
-        given = self.settings.get(name.lstrip("~").lstrip("/")) if name else None
+        setting = name.lstrip("~").lstrip("/")
+        given = self.settings.get(setting) if name else None
+        self.asked[setting] = given
         if given is not None:
             yield FlowValue(given, "launch", "", name)
             return
