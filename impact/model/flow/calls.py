@@ -131,7 +131,7 @@ class Calls:
             imported = meant != callee or head in self.code.aliases[fn.source.path]
             if not receiver or imported:
                 return receiver, frozenset(), around(meant)
-            return receiver, self.kinds_of(self.code.type_of(FlowExpr("name", receiver), fn), fn), None
+            return receiver, self.kinds_of(self.code.type_of_name(receiver, fn), fn), None
         if "." in callee:
             receiver = callee.rpartition(".")[0]
             if receiver == "this":
@@ -139,7 +139,7 @@ class Calls:
             if receiver.endswith("()"):
                 kind = self.code.type_of_call(receiver, fn)
             else:
-                kind = self.code.type_of(FlowExpr("name", receiver), fn)
+                kind = self.code.type_of_name(receiver, fn)
             return receiver, self.kinds_of(kind, fn) | self._getter(receiver), None
         if "::" in callee:
             return "", frozenset(), around(self.code.meant(callee, fn.source, fn.scope))
@@ -151,7 +151,7 @@ class Calls:
         return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
 
     def _typed(self, receiver: str, fn: Fn) -> bool:
-        return bool(not receiver.endswith("()") and self.code.type_of(FlowExpr("name", receiver), fn).name)
+        return bool(not receiver.endswith("()") and self.code.type_of_name(receiver, fn).name)
 
     def _distinct(self, row: FrameworkRow, call: FlowCall) -> bool:
         if row.does in ("publisher", "subscriber") and call.types:
@@ -377,9 +377,11 @@ def _with_types(call: FlowCall, kind: FlowType) -> FlowCall:
     )
 
 
-def _nested(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
+def _nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
     if value.kind == "make":
-        yield value
-    elif depth < 3 and value.kind in ("call", "choice", "bind", "list"):
-        for part in value.parts:
-            yield from _nested(part, depth + 1)
+        return [value]
+    found: list[FlowExpr] = []
+    for part in value.parts if depth < 3 and value.kind in ("call", "choice", "bind", "list") else ():
+        if part.parts or part.kind == "make":
+            found += _nested(part, depth + 1)
+    return found

@@ -650,16 +650,18 @@ class FlowCode:
         if value.kind == "make":
             return self.meant_type(value.text, fn.source, fn.scope)
         if value.kind == "name":
-            variable, rest = self.variable(value.text, fn)
-            if rest:
-                variable = self.identity(value.text, fn, depth + 1)
-            return self.type_of_variable(variable, fn, depth)
+            return self.type_of_name(value.text, fn, depth)
         if value.kind == "call":
             return self.type_of_call(value.text, fn, depth)
         if (value.kind == "list" and len(value.parts) == 1) or (value.kind == "index" and value.parts):
             # The type of a container is that of its elements.
             return self.type_of(value.parts[0], fn, depth)
         return UNKNOWN
+
+    def type_of_name(self, path: str, fn: Fn, depth: int = 0) -> FlowType:
+        """The type of what a path means in a function."""
+        variable, rest = self.variable(path, fn)
+        return self.type_of_variable(self.identity(path, fn, depth + 1) if rest else variable, fn, depth)
 
     def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> FlowType:
         """The type that a call gives: the class for a constructor, the declared type of a function of the code."""
@@ -761,14 +763,20 @@ class FlowCode:
             found = self.imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
             if found:
                 return found
+        cls = self._class_of_receiver(receiver, fn) if depth == 0 else self._receiving(receiver, fn, depth)
+        return [] if cls is None else [*self.method(cls, name), *self.overrides(cls, name)]
+
+    @cached_method
+    def _class_of_receiver(self, receiver: str, fn: Fn) -> Cls | None:
+        return self._receiving(receiver, fn, 0)
+
+    def _receiving(self, receiver: str, fn: Fn, depth: int) -> Cls | None:
+        """The class of what a method is called on."""
         if receiver.endswith("()"):
             kind = self.type_of_call(receiver, fn, depth + 1)
         else:
-            kind = self.type_of(FlowExpr("name", receiver), fn, depth)
-        cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
-        if cls is None:
-            return []
-        return [*self.method(cls, name), *self.overrides(cls, name)]
+            kind = self.type_of_name(receiver, fn, depth)
+        return self.class_of(kind.name, fn.source, fn.scope)
 
     def imported(self, name: str, source: CodeFile) -> list[Fn]:
         """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
@@ -810,13 +818,10 @@ class FlowCode:
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
         found: dict[Fn, list[tuple[Fn, FlowCall]]] = {}
-        for fn in self.functions:
-            known = fn.targets
-            for call in fn.facts.calls:
-                callee = call.callee
-                for target in known[callee] if callee in known else self.targets(callee, fn):
-                    if target is not fn:
-                        found.setdefault(target, []).append((fn, call))
+        for fn, call in self.calls_named(self.by_tail.keys() | self.classes.keys()):
+            for target in self.targets(call.callee, fn):
+                if target is not fn:
+                    found.setdefault(target, []).append((fn, call))
         return found
 
     @cached_property
@@ -830,18 +835,15 @@ class FlowCode:
                 method = "::" in name and bool(arguments) and arguments[0].text == "this"
                 for target in self.targets(name, fn):
                     found.setdefault(target, []).append((fn, arguments[1:] if method else arguments))
-            if depth < 3:
-                for part in value.parts:
+            for part in value.parts if depth < 3 else ():
+                if part.parts:
                     walk(part, fn, depth + 1)
 
         for fn in self.functions:
-            for call in fn.facts.calls:
-                for argument in call.arguments:
-                    if argument.parts:
-                        walk(argument, fn, 0)
-            for each in fn.facts.assignments:
-                if each.value.parts:
-                    walk(each.value, fn, 0)
+            given = (argument for call in fn.facts.calls for argument in call.arguments)
+            for value in (*given, *(each.value for each in fn.facts.assignments)):
+                if value.parts:
+                    walk(value, fn, 0)
         return found
 
     @cached_property
@@ -884,12 +886,12 @@ def _made_in(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...]
                 yield value.text, value.parts, each.line
 
 
-def _makes(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
-    if value.kind == "make" and value.text:
-        yield value
-    if depth < 4:
-        for part in value.parts:
-            yield from _makes(part, depth + 1)
+def _makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
+    found = [value] if value.kind == "make" and value.text else []
+    for part in value.parts if depth < 4 else ():
+        if part.parts or part.kind == "make":
+            found += _makes(part, depth + 1)
+    return found
 
 
 def parameter_of(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:

@@ -300,7 +300,7 @@ class Sites:
             if isinstance(spot, str) and spot.startswith("<"):
                 text = self.calls.template_argument(use, int(spot.strip("<>")))
             elif spot == "of receiver":
-                kind = self.code.type_of(FlowExpr("name", self.calls.receiver_of(use)), use.fn)
+                kind = self.code.type_of_name(self.calls.receiver_of(use), use.fn)
                 text = kind.arguments[0] if kind.arguments else ""
             name = self.code.meant_type(text, use.fn.source, use.fn.scope).name if text else ""
             if name and self.templates.has(name, use.fn):
@@ -328,7 +328,7 @@ class Sites:
                 if not text and row.does in ("subscriber", "server"):
                     text = self._parameter_type(use)
             elif spot == "of receiver":
-                kind = code.type_of(FlowExpr("name", self.calls.receiver_of(use)), fn)
+                kind = code.type_of_name(self.calls.receiver_of(use), fn)
                 if tail(kind.name) == "SubscriberFilter":
                     return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
                 text = kind.arguments[0] if kind.arguments else ""
@@ -851,7 +851,7 @@ class Sites:
         if sites:
             types = {site.type for site in sites if site.type}
             return Statement(use, sites, types.pop() if len(types) == 1 else "", expression)
-        kind = self.code.type_of(FlowExpr("name", receiver), use.fn)
+        kind = self.code.type_of_name(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
         if not use.sure and not self._plausible(receiver, use):

@@ -86,7 +86,7 @@ class Seeing:
 
     def of(self, one: Running) -> Sight:
         """What of a program is in sight."""
-        functions = [fn for fn in self.join.code.functions if fn in one.functions]
+        functions = sorted(one.functions, key=self._order.__getitem__)
         if not one.program.roots or not functions:
             return Sight("its code is not in the workspace", "its code is not in the workspace")
         classes = self.join.code.classes
@@ -96,6 +96,10 @@ class Seeing:
         both = next(chain(*steps), "")
         names = both or next(self._unnamed(functions), "")
         return Sight(names, both or next(self._unlisted(functions), ""))
+
+    @cached_property
+    def _order(self) -> dict[Fn, int]:
+        return {fn: place for place, fn in enumerate(self.join.code.functions)}
 
     def _outside(self, paths: set[str]) -> Iterator[str]:
         for path in sorted(paths):

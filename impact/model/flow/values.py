@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import product
+from itertools import islice, product
 from typing import NamedTuple
 
 from ...facts.flow import FlowCall, FlowExpr
@@ -130,10 +130,8 @@ class FlowValues:
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
 
     def _joined(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = [list(dict.fromkeys(self._of(part, fn, line, seen)))[:_MOST] for part in value.parts]
-        for number, row in enumerate(product(*pieces)):
-            if number >= _MOST:
-                return
+        pieces = [_first(self._of(part, fn, line, seen)) for part in value.parts]
+        for row in islice(product(*pieces), _MOST):
             unknown = next((one for one in row if one.text is None), None)
             if unknown is not None:
                 yield unknown
@@ -452,6 +450,16 @@ def beside(topic: str, name: str) -> str:
     """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
     head, slash, _ = topic.rpartition("/")
     return f"{head}{slash}{name}"
+
+
+def _first(values: Iterator[FlowValue]) -> list[FlowValue]:
+    """The first different values. What comes after them is not worked out."""
+    found: dict[FlowValue, None] = {}
+    for value in values:
+        found[value] = None
+        if len(found) == _MOST:
+            break
+    return list(found)
 
 
 def _argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
