@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 from msgspec import structs
 
@@ -26,14 +26,7 @@ LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
-_ROLES: dict[str, Role] = {
-    "publisher": "publisher",
-    "subscriber": "subscriber",
-    "server": "server",
-    "client": "client",
-    "action server": "action server",
-    "action client": "action client",
-}
+_ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
 
 
 class TemplateType(NamedTuple):
