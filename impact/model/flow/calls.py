@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from msgspec import structs
+
 from ...facts.cpp.names import split_at_commas
-from ...facts.flow import FlowCall, FlowExpr
+from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, around, parts_of, tail
 from .frameworks import FrameworkRow, Frameworks, Spot
 from .types import FlowType, parsed
@@ -189,8 +191,8 @@ class Calls:
 
     def _objects(self, fn: Fn) -> Iterator[FrameworkCall]:
         seen = set()
-        for rows, call in self._made(fn):
-            for row in rows:
+        for name, call in self._made(fn):
+            for row in self._rows(name, fn):
                 if row.does == "node" and not call.arguments:
                     continue
                 if row.first and not self._first_fits(row.first, fn, call):
@@ -208,8 +210,8 @@ class Calls:
             known = self._objects_of[key] = self.table.objects_of(name, key[1] == "python") if name else []
         return known
 
-    def _made(self, fn: Fn) -> Iterator[tuple[list[FrameworkRow], FlowCall]]:
-        """Objects that rows tell of, with the call that makes them: declared, initialised as members or bases, or made
+    def _made(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
+        """Objects of named classes, with the call that makes them: declared, initialised as members or bases, or made
         by make_shared."""
         code, source, scope = self.code, fn.source, fn.scope
         cpp = source.facts.language == "cpp"
@@ -217,56 +219,37 @@ class Calls:
             last = tail(call.callee)
             if last in ("make_shared", "make_unique") and call.types:
                 kind = code.meant_type(call.types, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    yield rows, _with_types(call, kind)
+                yield kind.name, structs.replace(call, types=", ".join(kind.arguments), returned=False)
             elif last == "make_shared" and "::" in call.callee:
-                rows = self._rows(code.meant(around(call.callee), source, scope), fn)
-                if rows:
-                    yield rows, call
+                yield code.meant(around(call.callee), source, scope), call
             elif cpp and last[:1].isupper() and "::" in call.callee and "." not in call.callee:
                 kind = code.meant_type(call.callee, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    yield rows, call if call.types else _with_types(call, kind)
+                types = ", ".join(kind.arguments)
+                yield kind.name, call if call.types else structs.replace(call, types=types, returned=False)
             for argument in call.arguments if cpp else ():
                 for make in _nested(argument) if argument.parts or argument.kind == "make" else ():
+                    target = around(call.callee) if last == "reset" else ""
                     kind = code.meant_type(make.text, source, scope)
-                    if rows := self._rows(kind.name, fn):
-                        target = around(call.callee) if last == "reset" else ""
-                        arguments = ", ".join(kind.arguments)
-                        yield (
-                            rows,
-                            FlowCall(make.text, make.parts, call.line, call.column, call.guard, arguments, target),
-                        )
+                    yield kind.name, _making(kind, make.text, make.parts, call, target)
             if last and not cpp:
-                for name in self._made_in_python(fn, call, last):
-                    if rows := self._rows(name, fn):
-                        yield rows, call
-        for name, call in self._made_by_members(fn):
-            if rows := self._rows(name, fn):
-                yield rows, call
+                yield from ((name, call) for name in self._made_in_python(fn, call, last))
+        yield from self._made_by_members(fn)
         for each in fn.facts.assignments:
             value = each.value
             base = code.base_made(fn, each) if each.target.startswith("this.") else None
             if base is not None:
-                if rows := self._rows(base[0], fn):
-                    yield rows, FlowCall(base[0], base[1], each.line, 0, each.guard)
+                yield base[0], _making(FlowType(base[0]), *base, each, "")
                 continue
             for make in _nested(value) if value.parts or value.kind == "make" else ():
-                if not make.text:
-                    continue
-                kind = code.meant_type(make.text, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    types = ", ".join(kind.arguments)
-                    yield rows, FlowCall(make.text, make.parts, each.line, 0, each.guard, types, each.target)
+                if make.text:
+                    kind = code.meant_type(make.text, source, scope)
+                    yield kind.name, _making(kind, make.text, make.parts, each, each.target)
             if value.kind == "make" and value.text:
                 continue
             whole = value.kind in ("list", "make")
             if whole or (value.kind in ("name", "text", "call") and each.target.startswith("this.")):
                 kind = self._initialised(fn, each.target)
-                if rows := self._rows(kind.name, fn):
-                    arguments = value.parts if whole else (value,)
-                    types = ", ".join(kind.arguments)
-                    yield rows, FlowCall(kind.name, arguments, each.line, 0, each.guard, types, each.target)
+                yield kind.name, _making(kind, kind.name, value.parts if whole else (value,), each, each.target)
 
     def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
@@ -371,10 +354,12 @@ class Calls:
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
 
 
-def _with_types(call: FlowCall, kind: FlowType) -> FlowCall:
-    return FlowCall(
-        call.callee, call.arguments, call.line, call.column, call.guard, ", ".join(kind.arguments), call.target
-    )
+def _making(
+    kind: FlowType, name: str, arguments: tuple[FlowExpr, ...], at: FlowCall | Assignment, target: str
+) -> FlowCall:  # fmt: skip
+    """The call that makes an object where something else stands."""
+    column = at.column if isinstance(at, FlowCall) else 0
+    return FlowCall(name, arguments, at.line, column, at.guard, ", ".join(kind.arguments), target)
 
 
 def _nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, get_args
 
 from msgspec import structs
 
+from ....edges.memory import cached_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
@@ -144,9 +145,6 @@ class Sites:
     def __init__(self, code: FlowCode, calls: Calls, values: FlowValues, defined: DefinedInterfaces):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
-        self._held: dict[
-            int, tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]
-        ] = {}
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -258,14 +256,12 @@ class Sites:
                     return self.code.identity(each.target, use.fn)
         return None
 
+    @cached_method
     def _holders(
         self, fn: Fn
     ) -> tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]:
         """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
         it; and what it wraps, by that call: the assignments."""
-        known = self._held.get(fn)
-        if known is not None:
-            return known
         # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
         put: dict[tuple[FlowExpr, ...], str] = {}
         for call in fn.facts.calls:
@@ -279,7 +275,6 @@ class Sites:
             for part in each.value.parts if each.value.kind == "make" else ():
                 if part.kind == "call":
                     wrapped.setdefault((part.text, part.parts), []).append(each)
-        self._held[fn] = put, wrapped
         return put, wrapped
 
     def _is_publisher(self, value: FlowExpr, fn: Fn) -> bool:
@@ -359,13 +354,16 @@ class Sites:
         if options is not None and options.kind == "name":
             for _, call in code.results(code.identity(options.text, fn)):
                 if "Options::" in call.callee and call.types:
-                    return interface_of(code.meant_type(split_at_commas(call.types)[0], fn.source, fn.scope).name)
+                    return self._interface(split_at_commas(call.types)[0], fn)
         kept = self.calls.kept_in(use)
         if kept is not None:
             kind = code.type_of_variable(kept, fn)
             if kind.arguments:
-                return interface_of(code.meant_type(kind.arguments[0], fn.source, fn.scope).name)
+                return self._interface(kind.arguments[0], fn)
         return ""
+
+    def _interface(self, type_: str, fn: Fn) -> str:
+        return interface_of(self.code.meant_type(type_, fn.source, fn.scope).name)
 
     def _in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
@@ -603,8 +601,7 @@ class Sites:
             if place is None:
                 continue
             found: list[Fn] = []
-            callers = list(self.code.callers.get(one, ()))
-            for caller, call in callers:
+            for caller, call in self.code.callers.get(one, ()):
                 positional = [argument for argument in call.arguments if argument.kind != "keyword"]
                 if place[0] < len(positional):
                     found += self.bodies(positional[place[0]], caller, use, depth + 1)
@@ -649,16 +646,9 @@ class Sites:
             found = [fn for fn in found if _serves(fn) == serving] or found
         if use is None or len(found) < 2 or not use.call.types:
             return found
-        wanted = interface_of(
-            self.code.meant_type(self.calls.template_argument(use, 0), use.fn.source, use.fn.scope).name
-        )
-        fitting = [
-            fn
-            for fn in found
-            if fn.facts.parameters
-            and interface_of(self.code.meant_type(fn.facts.parameters[0].type, fn.source, fn.scope).name) == wanted
-        ]
-        return fitting or found
+        wanted = self._interface(self.calls.template_argument(use, 0), use.fn)
+        given = ((fn, fn.facts.parameters[:1]) for fn in found)
+        return [fn for fn, first in given if first and self._interface(first[0].type, fn) == wanted] or found
 
     # Namespaces of node handles
 
@@ -847,17 +837,10 @@ class Sites:
         kind = self.code.type_of_name(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
-        if not use.sure and not self._plausible(receiver, use):
+        if not use.sure and len(use.call.arguments) > 2:
             return None
-        known = (
-            interface_of(self.code.meant_type(kind.arguments[0], use.fn.source, use.fn.scope).name)
-            if kind.arguments
-            else ""
-        )
+        known = self._interface(kind.arguments[0], use.fn) if kind.arguments else ""
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
-
-    def _plausible(self, receiver: str, use: FrameworkCall) -> bool:
-        return len(use.call.arguments) <= 2
 
     def publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""
@@ -886,19 +869,11 @@ class Sites:
                         yield from self.publishers(part.text, writer, depth + 1)
         for writer, each in code.writes(variable):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
-                text = (
-                    each.value.text
-                    if each.value.kind == "name"
-                    else shown(each.value.parts[0])
-                    if each.value.parts
-                    else ""
-                )
-                if each.value.kind == "call":
-                    text = (
-                        around(each.value.text)
-                        if tail(each.value.text) in ("at", "value", "get")
-                        else f"{each.value.text}()"
-                    )
+                text = each.value.text
+                if each.value.kind == "index":
+                    text = shown(each.value.parts[0]) if each.value.parts else ""
+                elif each.value.kind == "call":
+                    text = around(text) if tail(text) in ("at", "value", "get") else f"{text}()"
                 if text and text != receiver:
                     yield from self.publishers(text, writer, depth + 1)
         if variable.kind == "local":
