@@ -180,8 +180,8 @@ class Join:
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
     @cached_property
-    def _by_package(self) -> dict[str, list[Running]]:
-        found: dict[str, list[Running]] = {}
+    def _by_package(self) -> dict[str | None, list[Running]]:
+        found: dict[str | None, list[Running]] = {}
         for one in self._running:
             found.setdefault(one.program.package, []).append(one)
         return found
