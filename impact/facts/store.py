@@ -20,7 +20,7 @@ import os
 import sqlite3
 import stat
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from typing import Any
 
@@ -97,6 +97,19 @@ def encodable(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]
     for key, value in rows:
         with contextlib.suppress(UnicodeEncodeError):
             yield key, msgspec.msgpack.encode(value)
+
+
+def remembered(store: Store | None, table: str, key: bytes, type_: Any, make: Callable[[], Any]) -> Any:
+    """What was remembered under a key, as a value of a type; else, or where it is of another version, made anew and
+    remembered."""
+    data = store.memo(table, key) if store is not None else None
+    if data is not None:
+        with contextlib.suppress(msgspec.MsgspecError):
+            return msgspec.msgpack.decode(data, type=type_)
+    made = make()
+    if store is not None:
+        store.remember(table, encodable([(key, made)]))
+    return made
 
 
 def _seal(table: str, key: bytes, data: bytes) -> bytes:

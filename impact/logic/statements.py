@@ -193,7 +193,7 @@ class _Digester:
         )
 
     def _owners(self, fn: Fn) -> list[Owner]:
-        found: list[Owner] = [one for one in self.running if id(fn) in one.functions]
+        found: list[Owner] = [one for one in self.running if fn in one.functions]
         return found or [one for one in self.running if fn.source.path in one.program.files] or [self._library(fn)]
 
     def _library(self, fn: Fn) -> Node:

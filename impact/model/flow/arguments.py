@@ -49,7 +49,7 @@ class CommandLine:
         if fn.name == "main" and [parameter.name for parameter in fn.facts.parameters[1:2]] == [value.text]:
             return 0
         variable = self.code.identity(value.text, fn)
-        if any(call.arguments[2] == value for call in self._copies.get(id(fn), ())):
+        if any(call.arguments[2] == value for call in self._copies.get(fn, ())):
             return 0
         for writer, each in self.code.writes(variable):
             if each.value != value and each.operator == "=":
@@ -59,12 +59,12 @@ class CommandLine:
         return None
 
     @cached_property
-    def _copies(self) -> dict[int, list[FlowCall]]:
-        """Calls that put a copy of argv into their third argument, by the id() of the function they stand in."""
-        found: dict[int, list[FlowCall]] = {}
+    def _copies(self) -> dict[Fn, list[FlowCall]]:
+        """Calls that put a copy of argv into their third argument, by the function they stand in."""
+        found: dict[Fn, list[FlowCall]] = {}
         for fn, call in self.code.calls_named(_COPIES):
             if len(call.arguments) == 3:
-                found.setdefault(id(fn), []).append(call)
+                found.setdefault(fn, []).append(call)
         return found
 
     def places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:

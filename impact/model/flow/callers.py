@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
 from .graph import Trigger
+
+if TYPE_CHECKING:
+    from .code import Fn
 
 _DEEPEST = 8
 
@@ -83,22 +86,22 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
 def callers(join) -> Callers:
     """The callers of all functions of a Join."""
     code, triggers = join.code, join.triggers
-    above: dict[int, list] = {}
+    above: dict[Fn, list[Fn]] = {}
     for fn in code.functions:
-        calling = [caller for caller, _ in code.callers.get(id(fn), ())]
-        if not calling and not triggers.get(id(fn)):
+        calling = [caller for caller, _ in code.callers.get(fn, ())]
+        if not calling and not triggers.get(fn):
             # What is only defined there, a lambda or an inner function, runs because of what is around it.
             around = code.enclosing(fn)
             calling = [around] if around is not None else []
-        above[id(fn)] = list({id(caller): caller for caller in calling}.values())
-    calls = {id(caller) for calling in above.values() for caller in calling}
-    kept = [fn for fn in code.functions if above[id(fn)] or triggers.get(id(fn)) or id(fn) in calls]
-    places = {id(fn): place for place, fn in enumerate(kept)}
+        above[fn] = list(dict.fromkeys(calling))
+    calls = {caller for calling in above.values() for caller in calling}
+    kept = [fn for fn in code.functions if above[fn] or triggers.get(fn) or fn in calls]
+    places = {fn: place for place, fn in enumerate(kept)}
     return Callers(
         tuple(
             Called(
-                fn.source.path, fn.name, fn.facts.line, tuple(places[id(caller)] for caller in above[id(fn)]),
-                tuple(dict.fromkeys(triggers.get(id(fn), ()))),
+                fn.source.path, fn.name, fn.facts.line, tuple(places[caller] for caller in above[fn]),
+                tuple(dict.fromkeys(triggers.get(fn, ()))),
             )
             for fn in kept
         )

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from msgspec import structs
+
 from ...facts.cpp.names import split_at_commas
-from ...facts.flow import FlowCall, FlowExpr
+from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, around, parts_of, tail
 from .frameworks import FrameworkRow, Frameworks, Spot
 from .types import FlowType, parsed
@@ -43,11 +45,11 @@ class Calls:
     def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
-        described: dict[int, list[FlowCall]] = {}
+        described: dict[Fn, list[FlowCall]] = {}
         for fn, call in self.code.calls_named(self.table.calls):
-            described.setdefault(id(fn), []).append(call)
+            described.setdefault(fn, []).append(call)
         for fn in self.code.functions:
-            for call in described.get(id(fn), ()):
+            for call in described.get(fn, ()):
                 use = self.use_of(fn, call)
                 if use is not None:
                     found.append(use)
@@ -131,7 +133,7 @@ class Calls:
             imported = meant != callee or head in self.code.aliases[fn.source.path]
             if not receiver or imported:
                 return receiver, frozenset(), around(meant)
-            return receiver, self.kinds_of(self.code.type_of(FlowExpr("name", receiver), fn), fn), None
+            return receiver, self.kinds_of(self.code.type_of_name(receiver, fn), fn), None
         if "." in callee:
             receiver = callee.rpartition(".")[0]
             if receiver == "this":
@@ -139,7 +141,7 @@ class Calls:
             if receiver.endswith("()"):
                 kind = self.code.type_of_call(receiver, fn)
             else:
-                kind = self.code.type_of(FlowExpr("name", receiver), fn)
+                kind = self.code.type_of_name(receiver, fn)
             return receiver, self.kinds_of(kind, fn) | self._getter(receiver), None
         if "::" in callee:
             return "", frozenset(), around(self.code.meant(callee, fn.source, fn.scope))
@@ -151,7 +153,7 @@ class Calls:
         return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
 
     def _typed(self, receiver: str, fn: Fn) -> bool:
-        return bool(not receiver.endswith("()") and self.code.type_of(FlowExpr("name", receiver), fn).name)
+        return bool(not receiver.endswith("()") and self.code.type_of_name(receiver, fn).name)
 
     def _distinct(self, row: FrameworkRow, call: FlowCall) -> bool:
         if row.does in ("publisher", "subscriber") and call.types:
@@ -189,8 +191,8 @@ class Calls:
 
     def _objects(self, fn: Fn) -> Iterator[FrameworkCall]:
         seen = set()
-        for rows, call in self._made(fn):
-            for row in rows:
+        for name, call in self._made(fn):
+            for row in self._rows(name, fn):
                 if row.does == "node" and not call.arguments:
                     continue
                 if row.first and not self._first_fits(row.first, fn, call):
@@ -208,8 +210,8 @@ class Calls:
             known = self._objects_of[key] = self.table.objects_of(name, key[1] == "python") if name else []
         return known
 
-    def _made(self, fn: Fn) -> Iterator[tuple[list[FrameworkRow], FlowCall]]:
-        """Objects that rows tell of, with the call that makes them: declared, initialised as members or bases, or made
+    def _made(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
+        """Objects of named classes, with the call that makes them: declared, initialised as members or bases, or made
         by make_shared."""
         code, source, scope = self.code, fn.source, fn.scope
         cpp = source.facts.language == "cpp"
@@ -217,56 +219,37 @@ class Calls:
             last = tail(call.callee)
             if last in ("make_shared", "make_unique") and call.types:
                 kind = code.meant_type(call.types, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    yield rows, _with_types(call, kind)
+                yield kind.name, structs.replace(call, types=", ".join(kind.arguments), returned=False)
             elif last == "make_shared" and "::" in call.callee:
-                rows = self._rows(code.meant(around(call.callee), source, scope), fn)
-                if rows:
-                    yield rows, call
+                yield code.meant(around(call.callee), source, scope), call
             elif cpp and last[:1].isupper() and "::" in call.callee and "." not in call.callee:
                 kind = code.meant_type(call.callee, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    yield rows, call if call.types else _with_types(call, kind)
+                types = ", ".join(kind.arguments)
+                yield kind.name, call if call.types else structs.replace(call, types=types, returned=False)
             for argument in call.arguments if cpp else ():
                 for make in _nested(argument) if argument.parts or argument.kind == "make" else ():
+                    target = around(call.callee) if last == "reset" else ""
                     kind = code.meant_type(make.text, source, scope)
-                    if rows := self._rows(kind.name, fn):
-                        target = around(call.callee) if last == "reset" else ""
-                        arguments = ", ".join(kind.arguments)
-                        yield (
-                            rows,
-                            FlowCall(make.text, make.parts, call.line, call.column, call.guard, arguments, target),
-                        )
+                    yield kind.name, _making(kind, make.text, make.parts, call, target)
             if last and not cpp:
-                for name in self._made_in_python(fn, call, last):
-                    if rows := self._rows(name, fn):
-                        yield rows, call
-        for name, call in self._made_by_members(fn):
-            if rows := self._rows(name, fn):
-                yield rows, call
+                yield from ((name, call) for name in self._made_in_python(fn, call, last))
+        yield from self._made_by_members(fn)
         for each in fn.facts.assignments:
             value = each.value
             base = code.base_made(fn, each) if each.target.startswith("this.") else None
             if base is not None:
-                if rows := self._rows(base[0], fn):
-                    yield rows, FlowCall(base[0], base[1], each.line, 0, each.guard)
+                yield base[0], _making(FlowType(base[0]), *base, each, "")
                 continue
             for make in _nested(value) if value.parts or value.kind == "make" else ():
-                if not make.text:
-                    continue
-                kind = code.meant_type(make.text, source, scope)
-                if rows := self._rows(kind.name, fn):
-                    types = ", ".join(kind.arguments)
-                    yield rows, FlowCall(make.text, make.parts, each.line, 0, each.guard, types, each.target)
+                if make.text:
+                    kind = code.meant_type(make.text, source, scope)
+                    yield kind.name, _making(kind, make.text, make.parts, each, each.target)
             if value.kind == "make" and value.text:
                 continue
             whole = value.kind in ("list", "make")
             if whole or (value.kind in ("name", "text", "call") and each.target.startswith("this.")):
                 kind = self._initialised(fn, each.target)
-                if rows := self._rows(kind.name, fn):
-                    arguments = value.parts if whole else (value,)
-                    types = ", ".join(kind.arguments)
-                    yield rows, FlowCall(kind.name, arguments, each.line, 0, each.guard, types, each.target)
+                yield kind.name, _making(kind, kind.name, value.parts if whole else (value,), each, each.target)
 
     def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
@@ -371,15 +354,19 @@ class Calls:
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
 
 
-def _with_types(call: FlowCall, kind: FlowType) -> FlowCall:
-    return FlowCall(
-        call.callee, call.arguments, call.line, call.column, call.guard, ", ".join(kind.arguments), call.target
-    )
+def _making(
+    kind: FlowType, name: str, arguments: tuple[FlowExpr, ...], at: FlowCall | Assignment, target: str
+) -> FlowCall:  # fmt: skip
+    """The call that makes an object where something else stands."""
+    column = at.column if isinstance(at, FlowCall) else 0
+    return FlowCall(name, arguments, at.line, column, at.guard, ", ".join(kind.arguments), target)
 
 
-def _nested(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
+def _nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
     if value.kind == "make":
-        yield value
-    elif depth < 3 and value.kind in ("call", "choice", "bind", "list"):
-        for part in value.parts:
-            yield from _nested(part, depth + 1)
+        return [value]
+    found: list[FlowExpr] = []
+    for part in value.parts if depth < 3 and value.kind in ("call", "choice", "bind", "list") else ():
+        if part.parts or part.kind == "make":
+            found += _nested(part, depth + 1)
+    return found

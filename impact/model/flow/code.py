@@ -77,12 +77,14 @@ class Fn:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
 
 
-class Cls(NamedTuple):
-    """A class with the file it stands in. name: as its facts have it."""
+class Cls:
+    """A class with the file it stands in. name: as its facts have it; parts: of the name."""
 
-    source: CodeFile
-    facts: FlowClass
-    name: str
+    __slots__ = ("facts", "name", "parts", "source")
+
+    def __init__(self, source: CodeFile, facts: FlowClass):
+        self.source, self.facts, self.name = source, facts, facts.name
+        self.parts = parts_of(facts.name)
 
 
 class Variable(NamedTuple):
@@ -179,7 +181,8 @@ class FlowCode:
         self._first_in: dict[str, Fn] = {}
         self.by_tail: dict[str, list[Fn]] = {}
         self.by_name: dict[tuple[str, str], Fn] = {}
-        self.classes: dict[str, list[Cls]] = {}
+        # Objects that have an equal class each: what was found out about one holds for no other.
+        self.classes: dict[str, list[Cls]] = before.classes if before is not None else {}
         self.aliases: dict[str, dict[str, list[Alias]]] = {}
         self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
         self._qualified: dict[str, list[tuple[str, Alias]]] = {}
@@ -198,8 +201,8 @@ class FlowCode:
                     self._renamed.add(alias.name)
                     if alias.scope:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
-            for cls in source.facts.classes:
-                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls, cls.name))
+            for cls in source.facts.classes if before is None else ():
+                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
             if before is not None and before.sources[place].facts is source.facts:
                 functions = before.functions_in[source.path]
                 for fn in functions:
@@ -213,15 +216,9 @@ class FlowCode:
                 self.by_tail.setdefault(tail(fn.name), []).append(fn)
                 self.by_name.setdefault((source.path, fn.name), fn)
         # By names alone; a later state of the code may take these over.
-        self._bases: dict[str, list[Cls]] = before._bases if before is not None else {}
         self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
         self._meant: dict[tuple[str, str, str], str] = before._meant if before is not None else {}
         self._meant_types: dict[tuple[str, str, str], FlowType] = before._meant_types if before is not None else {}
-        self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
-        self._overrides: dict[tuple[str, str], list[Fn]] = {}
-        self._functions_of: dict[int, list[Fn]] = {}
-        self._members: dict[int, frozenset[str]] = {}
-        self._member_types: dict[tuple[str, str], tuple[str, CodeFile, str] | None] = {}
 
     # Names
 
@@ -319,7 +316,7 @@ class FlowCode:
         if not name:
             return None
         wanted = _absolute(name, source.path)
-        found = [cls for cls in self.classes.get(wanted[-1], ()) if parts_of(cls.name)[-len(wanted) :] == wanted]
+        found = [cls for cls in self.classes.get(wanted[-1], ()) if cls.parts[-len(wanted) :] == wanted]
         if not found and source.facts.language == "python" and len(wanted) > 1:
             # Imported: the module is in the path, not in the class's name.
             found = [
@@ -334,21 +331,22 @@ class FlowCode:
         # Of several bodies under one name (behind `#if`, say) the largest.
         return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
 
+    def class_meant(self, type_: str, source: CodeFile, scope: str) -> Cls | None:
+        """The class that a type means, as class_of() says; of a pointer or container that of what it holds."""
+        return self.class_of(self.meant_type(type_, source, scope).name, source, scope)
+
+    @cached_method
     def bases(self, cls: Cls) -> list[Cls]:
         """The class and those it derives from, nearest first, as far as they are in the code."""
-        known = self._bases.get(cls.name + cls.source.path)
-        if known is None:
-            known, queue = [], [cls]
-            while queue and len(known) < 30:
-                one = queue.pop(0)
-                if one in known:
-                    continue
-                known.append(one)
-                for base in one.facts.bases:
-                    found = self.class_of(base, one.source, one.name)
-                    if found is not None:
-                        queue.append(found)
-            self._bases[cls.name + cls.source.path] = known
+        known: list[Cls] = []
+        queue = [cls]
+        while queue and len(known) < 30:
+            one = queue.pop(0)
+            if one in known:
+                continue
+            known.append(one)
+            found = (self.class_of(base, one.source, one.name) for base in one.facts.bases)
+            queue.extend(base for base in found if base is not None)
         return known
 
     @cached_property
@@ -394,26 +392,15 @@ class FlowCode:
             found = self.class_of("::".join(fn.owner[1:]), fn.source, fn.scope)
         return found
 
+    @cached_method
     def method(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method, of the nearest class that has some; overloads are several."""
-        if name not in self.by_tail:
-            return []
-        key = (cls.source.path, cls.name, name)
-        known = self._methods_of.get(key)
-        if known is None:
-            known = []
-            for one in self.bases(cls):
-                known = self._bodies(one, name)
-                if known:
-                    break
-            self._methods_of[key] = known
-        return known
+        return next(filter(None, (self._bodies(one, name) for one in self.bases(cls))), [])
 
     def _bodies(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method of one class."""
-        wanted = parts_of(cls.name)
-        candidates = self._methods.get((wanted[-1], name), ()) if wanted else ()
-        return [fn for fn in candidates if self._owned(fn, cls, wanted)]
+        candidates = self._methods.get((cls.parts[-1], name), ()) if cls.parts else ()
+        return [fn for fn in candidates if self._owned(fn, cls)]
 
     @cached_property
     def _methods(self) -> dict[tuple[str, str], list[Fn]]:
@@ -424,17 +411,10 @@ class FlowCode:
                 found.setdefault((fn.owner[-1], tail(fn.name)), []).append(fn)
         return found
 
+    @cached_method
     def overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
-        derived = self.derived.get(cls.name)
-        if not derived or name not in self.by_tail:
-            return []
-        key = (cls.name, name)
-        known = self._overrides.get(key)
-        if known is None:
-            known = [fn for one in derived for fn in self._bodies(one, name)]
-            self._overrides[key] = known
-        return known
+        return [fn for one in self.derived.get(cls.name, ()) for fn in self._bodies(one, name)]
 
     def enclosing(self, fn: Fn) -> Fn | None:
         """The function that a lambda, or a function of Python, stands in."""
@@ -489,12 +469,10 @@ class FlowCode:
                 return Variable("member", fn.facts.owner, head)
         return Variable("global", fn.source.path, head)
 
+    @cached_method
     def members(self, cls: Cls) -> frozenset[str]:
         """Names of the members that a class declares."""
-        known = self._members.get(id(cls.facts))
-        if known is None:
-            known = self._members[id(cls.facts)] = frozenset(member.name for member in cls.facts.members)
-        return known
+        return frozenset(member.name for member in cls.facts.members)
 
     def member(self, fn: Fn, name: str) -> Variable:
         """The member of a function's class, under the name of the class that declares it."""
@@ -520,7 +498,7 @@ class FlowCode:
         found, rest = self.variable(path, fn)
         for part in rest:
             kind = self.type_of_variable(found, fn, depth)
-            cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
+            cls = self.class_of(kind.name, fn.source, fn.scope)
             owner = self._declaring(cls, part).name if cls else f"{found.owner}.{found.name}"
             found = Variable("member", owner, part)
         if depth == 0:
@@ -531,17 +509,13 @@ class FlowCode:
         """All functions whose owner is a class of this name, lambdas in them included."""
         return self._by_owner.get(tail(name), [])
 
+    @cached_method
     def functions_of(self, cls: Cls) -> list[Fn]:
         """The functions of one class, lambdas in them included."""
-        known = self._functions_of.get(id(cls.facts))
-        if known is None:
-            wanted = parts_of(cls.name)
-            known = [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
-            self._functions_of[id(cls.facts)] = known
-        return known
+        return [fn for fn in self._by_owner.get(cls.parts[-1], ()) if self._owned(fn, cls)]
 
-    def _owned(self, fn: Fn, cls: Cls, wanted: tuple[str, ...]) -> bool:
-        own = fn.owner
+    def _owned(self, fn: Fn, cls: Cls) -> bool:
+        own, wanted = fn.owner, cls.parts
         if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
             return False
         return fn.source.path == cls.source.path or fn.source.package == cls.source.package
@@ -591,10 +565,7 @@ class FlowCode:
     def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, CodeFile, str]:
         """The type a variable is declared with, as written, and the file and scope in which to read it."""
         if variable.kind == "member":
-            key = (variable.owner, variable.name)
-            if key not in self._member_types:
-                self._member_types[key] = self._member_type(*key)
-            return self._member_types[key] or ("", fn.source, fn.scope)
+            return self._member_type(variable.owner, variable.name) or ("", fn.source, fn.scope)
         if variable.kind == "local":
             for one in self.chain(fn):
                 if one.place == variable.owner:
@@ -651,6 +622,7 @@ class FlowCode:
         """The first function of a file; `otherwise` for a file without functions."""
         return self._first_in.get(source.path, otherwise)
 
+    @cached_method
     def _member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
         for cls in self.classes.get(tail(owner), ()):
             if cls.name == owner:
@@ -678,16 +650,18 @@ class FlowCode:
         if value.kind == "make":
             return self.meant_type(value.text, fn.source, fn.scope)
         if value.kind == "name":
-            variable, rest = self.variable(value.text, fn)
-            if rest:
-                variable = self.identity(value.text, fn, depth + 1)
-            return self.type_of_variable(variable, fn, depth)
+            return self.type_of_name(value.text, fn, depth)
         if value.kind == "call":
             return self.type_of_call(value.text, fn, depth)
         if (value.kind == "list" and len(value.parts) == 1) or (value.kind == "index" and value.parts):
             # The type of a container is that of its elements.
             return self.type_of(value.parts[0], fn, depth)
         return UNKNOWN
+
+    def type_of_name(self, path: str, fn: Fn, depth: int = 0) -> FlowType:
+        """The type of what a path means in a function."""
+        variable, rest = self.variable(path, fn)
+        return self.type_of_variable(self.identity(path, fn, depth + 1) if rest else variable, fn, depth)
 
     def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> FlowType:
         """The type that a call gives: the class for a constructor, the declared type of a function of the code."""
@@ -789,14 +763,20 @@ class FlowCode:
             found = self.imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
             if found:
                 return found
+        cls = self._class_of_receiver(receiver, fn) if depth == 0 else self._receiving(receiver, fn, depth)
+        return [] if cls is None else [*self.method(cls, name), *self.overrides(cls, name)]
+
+    @cached_method
+    def _class_of_receiver(self, receiver: str, fn: Fn) -> Cls | None:
+        return self._receiving(receiver, fn, 0)
+
+    def _receiving(self, receiver: str, fn: Fn, depth: int) -> Cls | None:
+        """The class of what a method is called on."""
         if receiver.endswith("()"):
             kind = self.type_of_call(receiver, fn, depth + 1)
         else:
-            kind = self.type_of(FlowExpr("name", receiver), fn, depth)
-        cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
-        if cls is None:
-            return []
-        return [*self.method(cls, name), *self.overrides(cls, name)]
+            kind = self.type_of_name(receiver, fn, depth)
+        return self.class_of(kind.name, fn.source, fn.scope)
 
     def imported(self, name: str, source: CodeFile) -> list[Fn]:
         """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
@@ -835,41 +815,35 @@ class FlowCode:
         return []
 
     @cached_property
-    def callers(self) -> dict[int, list[tuple[Fn, FlowCall]]]:
-        """Calls that reach a function of the code, by the function's id()."""
-        found: dict[int, list[tuple[Fn, FlowCall]]] = {}
-        for fn in self.functions:
-            known = fn.targets
-            for call in fn.facts.calls:
-                callee = call.callee
-                for target in known[callee] if callee in known else self.targets(callee, fn):
-                    if target is not fn:
-                        found.setdefault(id(target), []).append((fn, call))
+    def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
+        """Calls that reach a function of the code, by the function."""
+        found: dict[Fn, list[tuple[Fn, FlowCall]]] = {}
+        for fn, call in self.calls_named(self.by_tail.keys() | self.classes.keys()):
+            for target in self.targets(call.callee, fn):
+                if target is not fn:
+                    found.setdefault(target, []).append((fn, call))
         return found
 
     @cached_property
-    def bound(self) -> dict[int, list[tuple[Fn, tuple[FlowExpr, ...]]]]:
-        """Functions of the code that are bound with arguments (std::bind, partial), by their id()."""
-        found: dict[int, list[tuple[Fn, tuple[FlowExpr, ...]]]] = {}
+    def bound(self) -> dict[Fn, list[tuple[Fn, tuple[FlowExpr, ...]]]]:
+        """Functions of the code that are bound with arguments (std::bind, partial), by the function."""
+        found: dict[Fn, list[tuple[Fn, tuple[FlowExpr, ...]]]] = {}
 
         def walk(value: FlowExpr, fn: Fn, depth: int) -> None:
             if value.kind == "bind" and value.parts and value.parts[0].kind in ("function", "name"):
                 name, arguments = value.parts[0].text, value.parts[1:]
                 method = "::" in name and bool(arguments) and arguments[0].text == "this"
                 for target in self.targets(name, fn):
-                    found.setdefault(id(target), []).append((fn, arguments[1:] if method else arguments))
-            if depth < 3:
-                for part in value.parts:
+                    found.setdefault(target, []).append((fn, arguments[1:] if method else arguments))
+            for part in value.parts if depth < 3 else ():
+                if part.parts:
                     walk(part, fn, depth + 1)
 
         for fn in self.functions:
-            for call in fn.facts.calls:
-                for argument in call.arguments:
-                    if argument.parts:
-                        walk(argument, fn, 0)
-            for each in fn.facts.assignments:
-                if each.value.parts:
-                    walk(each.value, fn, 0)
+            given = (argument for call in fn.facts.calls for argument in call.arguments)
+            for value in (*given, *(each.value for each in fn.facts.assignments)):
+                if value.parts:
+                    walk(value, fn, 0)
         return found
 
     @cached_property
@@ -912,12 +886,12 @@ def _made_in(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...]
                 yield value.text, value.parts, each.line
 
 
-def _makes(value: FlowExpr, depth: int = 0) -> Iterator[FlowExpr]:
-    if value.kind == "make" and value.text:
-        yield value
-    if depth < 4:
-        for part in value.parts:
-            yield from _makes(part, depth + 1)
+def _makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
+    found = [value] if value.kind == "make" and value.text else []
+    for part in value.parts if depth < 4 else ():
+        if part.parts or part.kind == "make":
+            found += _makes(part, depth + 1)
+    return found
 
 
 def parameter_of(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:

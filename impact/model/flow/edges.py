@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
+from ....edges.memory import kept_with
 from ..workspace import Workspace
 from .defined import released
 from .graph import Endpoint, Graph, Node
@@ -167,14 +168,15 @@ def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
                     yield listed[0], number - compared
 
 
-def flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
+@kept_with
+def flows(workspace: Workspace) -> list[tuple[str, Flow]]:
     """What each launch file surely starts, by its path; then the whole workspace, with an empty path."""
     whole = whole_flow(workspace)
-    for launch in flow_of(workspace).launches:
-        yield launch.path, launched_flow(whole, launch)
-    yield "", whole
+    started = [(launch.path, launched_flow(whole, launch)) for launch in flow_of(workspace).launches]
+    return [*started, ("", whole)]
 
 
+@kept_with
 def whole_flow(workspace: Workspace) -> Flow:
     """The flow of a whole workspace, under the names that its source gives."""
     names = {each.name: workspace.interface_names.get(each.name, set()) for each in workspace}
@@ -187,11 +189,13 @@ def launched_flow(whole: Flow, launch: Launch) -> Flow:
     return Flow(launch.graph, whole.interfaces, surely, whole)
 
 
-def met(workspace: Workspace) -> Iterator[FlowPair]:
+@kept_with
+def met(workspace: Workspace) -> list[FlowPair]:
     """Pairs that a launch file starts, then pairs that nothing starts together and that have nobody else to talk to:
     the workspace's programs need not be made to run together, but these have no other use. What launch files start of
     the latter has to go by the same name there."""
     seen = set()
+    found: list[FlowPair] = []
     started = _Started(workspace)
     for launch, flow in flows(workspace):
         for pair in flow.pairs(launch):
@@ -199,7 +203,8 @@ def met(workspace: Workspace) -> Iterator[FlowPair]:
             if key in seen or (not launch and not (started.may_meet(pair) and _left_to_each_other(flow, pair))):
                 continue
             seen.add(key)
-            yield pair
+            found.append(pair)
+    return found
 
 
 class _Started:
@@ -227,10 +232,9 @@ class _Started:
 
 def unstarted(workspace: Workspace) -> Flow:
     """The workspace's flow as far as no launch file starts its nodes: these have the names that the source gives."""
-    flow = whole_flow(workspace)
+    whole = whole_flow(workspace)
     started = {start.program for launch in flow_of(workspace).launches for start in launch.starts}
-    flow.surely = flow.nodes.keys() - started
-    return flow
+    return Flow(whole.graph, whole.interfaces, whole.nodes.keys() - started, whole)
 
 
 def _left_to_each_other(flow: Flow, pair: FlowPair) -> bool:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 from msgspec import structs
 
+from ....edges.memory import cached_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
@@ -26,23 +27,16 @@ LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
-_ROLES: dict[str, Role] = {
-    "publisher": "publisher",
-    "subscriber": "subscriber",
-    "server": "server",
-    "client": "client",
-    "action server": "action server",
-    "action client": "action client",
-}
+_ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
 
 
 class TemplateType(NamedTuple):
-    """A type that an endpoint in a template is of: where a class is made, or a function (by its id()) runs; always for
+    """A type that an endpoint in a template is of: where a class is made, or a function runs; always for
     neither."""
 
     type: str
     cls: str = ""
-    fn: int = 0
+    fn: Fn | None = None
 
 
 class Site(NamedTuple):
@@ -151,9 +145,6 @@ class Sites:
     def __init__(self, code: FlowCode, calls: Calls, values: FlowValues, defined: DefinedInterfaces):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
-        self._held: dict[
-            int, tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]
-        ] = {}
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -265,14 +256,12 @@ class Sites:
                     return self.code.identity(each.target, use.fn)
         return None
 
+    @cached_method
     def _holders(
         self, fn: Fn
     ) -> tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]:
         """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
         it; and what it wraps, by that call: the assignments."""
-        known = self._held.get(id(fn))
-        if known is not None:
-            return known
         # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
         put: dict[tuple[FlowExpr, ...], str] = {}
         for call in fn.facts.calls:
@@ -286,7 +275,6 @@ class Sites:
             for part in each.value.parts if each.value.kind == "make" else ():
                 if part.kind == "call":
                     wrapped.setdefault((part.text, part.parts), []).append(each)
-        self._held[id(fn)] = put, wrapped
         return put, wrapped
 
     def _is_publisher(self, value: FlowExpr, fn: Fn) -> bool:
@@ -300,7 +288,7 @@ class Sites:
             if isinstance(spot, str) and spot.startswith("<"):
                 text = self.calls.template_argument(use, int(spot.strip("<>")))
             elif spot == "of receiver":
-                kind = self.code.type_of(FlowExpr("name", self.calls.receiver_of(use)), use.fn)
+                kind = self.code.type_of_name(self.calls.receiver_of(use), use.fn)
                 text = kind.arguments[0] if kind.arguments else ""
             name = self.code.meant_type(text, use.fn.source, use.fn.scope).name if text else ""
             if name and self.templates.has(name, use.fn):
@@ -328,7 +316,7 @@ class Sites:
                 if not text and row.does in ("subscriber", "server"):
                     text = self._parameter_type(use)
             elif spot == "of receiver":
-                kind = code.type_of(FlowExpr("name", self.calls.receiver_of(use)), fn)
+                kind = code.type_of_name(self.calls.receiver_of(use), fn)
                 if tail(kind.name) == "SubscriberFilter":
                     return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
                 text = kind.arguments[0] if kind.arguments else ""
@@ -366,13 +354,16 @@ class Sites:
         if options is not None and options.kind == "name":
             for _, call in code.results(code.identity(options.text, fn)):
                 if "Options::" in call.callee and call.types:
-                    return interface_of(code.meant_type(split_at_commas(call.types)[0], fn.source, fn.scope).name)
+                    return self._interface(split_at_commas(call.types)[0], fn)
         kept = self.calls.kept_in(use)
         if kept is not None:
             kind = code.type_of_variable(kept, fn)
             if kind.arguments:
-                return interface_of(code.meant_type(kind.arguments[0], fn.source, fn.scope).name)
+                return self._interface(kind.arguments[0], fn)
         return ""
+
+    def _interface(self, type_: str, fn: Fn) -> str:
+        return interface_of(self.code.meant_type(type_, fn.source, fn.scope).name)
 
     def _in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
@@ -610,8 +601,7 @@ class Sites:
             if place is None:
                 continue
             found: list[Fn] = []
-            callers = list(self.code.callers.get(id(one), ()))
-            for caller, call in callers:
+            for caller, call in self.code.callers.get(one, ()):
                 positional = [argument for argument in call.arguments if argument.kind != "keyword"]
                 if place[0] < len(positional):
                     found += self.bodies(positional[place[0]], caller, use, depth + 1)
@@ -656,16 +646,9 @@ class Sites:
             found = [fn for fn in found if _serves(fn) == serving] or found
         if use is None or len(found) < 2 or not use.call.types:
             return found
-        wanted = interface_of(
-            self.code.meant_type(self.calls.template_argument(use, 0), use.fn.source, use.fn.scope).name
-        )
-        fitting = [
-            fn
-            for fn in found
-            if fn.facts.parameters
-            and interface_of(self.code.meant_type(fn.facts.parameters[0].type, fn.source, fn.scope).name) == wanted
-        ]
-        return fitting or found
+        wanted = self._interface(self.calls.template_argument(use, 0), use.fn)
+        given = ((fn, fn.facts.parameters[:1]) for fn in found)
+        return [fn for fn, first in given if first and self._interface(first[0].type, fn) == wanted] or found
 
     # Namespaces of node handles
 
@@ -734,7 +717,7 @@ class Sites:
     def _given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
         """The namespaces of the handles that are passed for a parameter."""
         owner = self.code.owner_of(fn)
-        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(id(fn), ())]
+        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(fn, ())]
         if owner is not None and tail(fn.name) == tail(owner.name):
             makers += self.code.constructions.get(owner.name, ())
             makers += self.values.bases_made.get(owner.name, ())
@@ -792,12 +775,12 @@ class Sites:
         return found
 
     @cached_property
-    def made_in(self) -> dict[int, list[Site]]:
-        """Sites by the id() of the function that makes and returns them."""
-        found: dict[int, list[Site]] = {}
+    def made_in(self) -> dict[Fn, list[Site]]:
+        """Sites by the function that makes and returns them."""
+        found: dict[Fn, list[Site]] = {}
         for site in self.endpoints:
             if site.use.call.returned:
-                found.setdefault(id(site.use.fn), []).append(site)
+                found.setdefault(site.use.fn, []).append(site)
         return found
 
     @cached_property
@@ -820,17 +803,17 @@ class Sites:
 
     def _through(self, direct: list[Statement]) -> Iterator[Statement]:
         """Calls of the code's own methods that are called as the framework's, and publish."""
-        inside: dict[int, list[Statement]] = {}
+        inside: dict[Fn, list[Statement]] = {}
         for statement in direct:
-            inside.setdefault(id(statement.use.fn), []).append(statement)
+            inside.setdefault(statement.use.fn, []).append(statement)
         names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
         for fn, call in self.code.calls_named(names):
             for target in self.code.targets(call.callee, fn):
-                inner = inside.get(id(target)) or [
+                inner = inside.get(target) or [
                     statement
                     for further in target.facts.calls
                     for last in self.code.targets(further.callee, target)
-                    for statement in inside.get(id(last), ())
+                    for statement in inside.get(last, ())
                 ]
                 if inner:
                     sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
@@ -851,20 +834,13 @@ class Sites:
         if sites:
             types = {site.type for site in sites if site.type}
             return Statement(use, sites, types.pop() if len(types) == 1 else "", expression)
-        kind = self.code.type_of(FlowExpr("name", receiver), use.fn)
+        kind = self.code.type_of_name(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
-        if not use.sure and not self._plausible(receiver, use):
+        if not use.sure and len(use.call.arguments) > 2:
             return None
-        known = (
-            interface_of(self.code.meant_type(kind.arguments[0], use.fn.source, use.fn.scope).name)
-            if kind.arguments
-            else ""
-        )
+        known = self._interface(kind.arguments[0], use.fn) if kind.arguments else ""
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
-
-    def _plausible(self, receiver: str, use: FrameworkCall) -> bool:
-        return len(use.call.arguments) <= 2
 
     def publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""
@@ -876,7 +852,7 @@ class Sites:
                 for each in target.facts.assignments:
                     if each.operator == "return" and each.value.kind == "name":
                         yield from self.publishers(each.value.text, target, depth + 1)
-                yield from (site for site in self.made_in.get(id(target), ()) if site.role == "publisher")
+                yield from (site for site in self.made_in.get(target, ()) if site.role == "publisher")
             if tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
                 yield from self.publishers(around(receiver.removesuffix("()")), fn, depth + 1)
             return
@@ -893,19 +869,11 @@ class Sites:
                         yield from self.publishers(part.text, writer, depth + 1)
         for writer, each in code.writes(variable):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
-                text = (
-                    each.value.text
-                    if each.value.kind == "name"
-                    else shown(each.value.parts[0])
-                    if each.value.parts
-                    else ""
-                )
-                if each.value.kind == "call":
-                    text = (
-                        around(each.value.text)
-                        if tail(each.value.text) in ("at", "value", "get")
-                        else f"{each.value.text}()"
-                    )
+                text = each.value.text
+                if each.value.kind == "index":
+                    text = shown(each.value.parts[0]) if each.value.parts else ""
+                elif each.value.kind == "call":
+                    text = around(text) if tail(text) in ("at", "value", "get") else f"{text}()"
                 if text and text != receiver:
                     yield from self.publishers(text, writer, depth + 1)
         if variable.kind == "local":
@@ -914,8 +882,8 @@ class Sites:
                 if place is None:
                     continue
                 for caller, arguments in [
-                    *((caller, call.arguments) for caller, call in code.callers.get(id(one), ())),
-                    *code.bound.get(id(one), ()),
+                    *((caller, call.arguments) for caller, call in code.callers.get(one, ())),
+                    *code.bound.get(one, ()),
                 ]:  # fmt: skip
                     positional = [argument for argument in arguments if argument.kind != "keyword"]
                     if place[0] < len(positional) and positional[place[0]].kind == "name":

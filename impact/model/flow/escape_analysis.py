@@ -86,7 +86,7 @@ class Seeing:
 
     def of(self, one: Running) -> Sight:
         """What of a program is in sight."""
-        functions = [fn for fn in self.join.code.functions if id(fn) in one.functions]
+        functions = sorted(one.functions, key=self._order.__getitem__)
         if not one.program.roots or not functions:
             return Sight("its code is not in the workspace", "its code is not in the workspace")
         classes = self.join.code.classes
@@ -96,6 +96,10 @@ class Seeing:
         both = next(chain(*steps), "")
         names = both or next(self._unnamed(functions), "")
         return Sight(names, both or next(self._unlisted(functions), ""))
+
+    @cached_property
+    def _order(self) -> dict[Fn, int]:
+        return {fn: place for place, fn in enumerate(self.join.code.functions)}
 
     def _outside(self, paths: set[str]) -> Iterator[str]:
         for path in sorted(paths):
@@ -169,7 +173,7 @@ class Seeing:
             return False
         if not self.workspace.interface_names.get(head, set()).isdisjoint(inner):
             return False
-        return code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope) is None
+        return code.class_meant(name, fn.source, fn.scope) is None
 
     @cached_property
     def _aliased(self) -> set[str]:
@@ -195,12 +199,12 @@ class Seeing:
         """What the program is built from and, as far as can be told, never runs."""
         for use in self.join.calls.uses:
             path = use.fn.source.path
-            if path in one.program.files and id(use.fn) not in self._reached:
+            if path in one.program.files and use.fn not in self._reached:
                 yield f"`{use.fn.name}` is not seen to be reached"
 
     @cached_property
-    def _reached(self) -> set[int]:
-        return {number for one in self.join.running() for number in one.functions}
+    def _reached(self) -> set[Fn]:
+        return {fn for one in self.join.running() for fn in one.functions}
 
     def _is_node(self, value: FlowExpr, fn: Fn) -> bool:
         calls = self.join.calls
@@ -217,17 +221,17 @@ class Seeing:
         return False
 
     def _unnamed(self, functions: list[Fn]) -> Iterator[str]:
-        inside = {id(fn) for fn in functions}
+        inside = set(functions)
         for site in self.join.sites.endpoints:
-            if id(site.use.fn) in inside and any(value.text is None for value in site.names):
+            if site.use.fn in inside and any(value.text is None for value in site.names):
                 yield f"the name of a {site.role} is not known"
         for use in self.join.sites.wrapped:
-            if id(use.fn) in inside:
+            if use.fn in inside:
                 yield "names are made in a wrapper"
                 return
 
     def _unlisted(self, functions: list[Fn]) -> Iterator[str]:
-        inside = {id(fn) for fn in functions}
+        inside = set(functions)
         for fn in functions:
             for call in fn.facts.calls:
                 if tail(call.callee) in _WHOLE or any(_says(argument, _OPTIONS) for argument in call.arguments):
@@ -236,7 +240,7 @@ class Seeing:
                 if tail(name) in _WHOLE:
                     yield f"`{tail(name)}` asks for more than one parameter"
         for use in self.join.calls.uses:
-            if id(use.fn) not in inside:
+            if use.fn not in inside:
                 continue
             if use.row.framework in _ASKING:
                 yield f"`{use.row.framework}` asks for parameters of its own"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 
+from ...facts.extract import ExtractedFacts
 from ...facts.kinds import FLOW, kind_of
 from ...source_keys import code_stamp
 from ..package import role_of_folder
@@ -46,12 +47,13 @@ def code_kinds(tree) -> Callable[[str], str | None]:
     return wanted
 
 
-def stamp(workspace: Workspace) -> bytes:
-    """Differs whenever something does that message flow, or what launch files start, is joined from."""
+def stamp(workspace: Workspace, second: ExtractedFacts | None = None) -> bytes:
+    """Differs whenever something does that message flow, or what launch files start, is joined from. second: the flow
+    facts alone, for what is joined of nothing else."""
     found = hashlib.sha1(workspace.identity + code_stamp().encode())
-    gathered = workspace.gathered
+    gathered = second or workspace.gathered
     for path in sorted(gathered.kinds):
-        if gathered.kinds[path] in _READ:
-            row = f"{path} {gathered.ids.get(path, '')}\n"
+        if second is not None or gathered.kinds[path] in _READ:
+            row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
             found.update(row.encode("utf-8", "surrogateescape"))
     return found.digest()

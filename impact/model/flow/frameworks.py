@@ -51,7 +51,6 @@ class FrameworkRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     default: tuple[Spot, ...] = ()
     variable: tuple[Spot, ...] = ()
     message: tuple[Spot, ...] = ()
-    namespace: tuple[Spot, ...] = ()
     remaps: tuple[Spot, ...] = ()
     declares: bool = False
     camera_info: bool = False
@@ -108,8 +107,7 @@ def _ends(full: str, name: str) -> bool:
 
 def _row(raw: dict[str, Any]) -> FrameworkRow:
     spots = (
-        "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace",
-        "remaps",
+        "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "remaps",
     )  # fmt: skip
     fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
     return msgspec.convert({**raw, **fixed}, FrameworkRow)

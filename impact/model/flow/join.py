@@ -56,7 +56,7 @@ class Running(NamedTuple):
 
     program: StartableProgram
     node: Node
-    functions: set[int]
+    functions: set[Fn]
     classes: set[str]
     values: FlowValues
     instance: Instance | None = None
@@ -96,10 +96,11 @@ class Join:
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
+        # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
         # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
+        self._sites_of: dict[tuple, list[tuple[Running, dict[str, str | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
-        self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
+        self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
     def running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
@@ -112,13 +113,13 @@ class Join:
             if program.kind in ("executable", "script"):
                 functions, classes = self.reach.of(program.roots)
                 if not program.roots:
-                    functions = {id(fn) for fn in self.code.functions if fn.source.path in program.files}
+                    functions = {fn for fn in self.code.functions if fn.source.path in program.files}
             else:
                 cls = next(
                     (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
                 )
                 functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
-            named = [use for use in self.calls.doing("node") if id(use.fn) in functions]
+            named = [use for use in self.calls.doing("node") if use.fn in functions]
             found.append(Running(program, self._node(program, named), functions, classes, self.values))
         return found
 
@@ -129,7 +130,6 @@ class Join:
         return self._started[1]
 
     def _start(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
-        programs = self.running()
         found: list[Running] = []
         missing: list[Unresolved] = []
         for start in launch.started:
@@ -142,7 +142,7 @@ class Join:
                 reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
                 missing.append(Unresolved("started node", reasons or "its executable is not known", *at, written))
                 continue
-            fitting = [one for one in programs if self._starts(one.program, start)]
+            fitting = self._fitting(start)
             if not fitting:
                 reason = f"no code of `{start.package.shown}` here is `{what}`"
                 if start.kind != "container":
@@ -153,8 +153,8 @@ class Join:
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
             )  # fmt: skip
-            arguments = [argument.value for argument in start.arguments]
-            known = None if None in arguments else [one for one in arguments if one is not None]
+            arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
+            known = arguments if len(arguments) == len(start.arguments) else None
             values = self.values.under(instance.settings, known)
             found.append(one._replace(node=node, instance=instance, values=values))
         return found, missing
@@ -179,17 +179,23 @@ class Join:
             return program.plugin == wanted or (same and tail(program.plugin) == tail(wanted))
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
-    def _starts(self, program: StartableProgram, start: Started) -> bool:
+    @cached_property
+    def _by_package(self) -> dict[str | None, list[Running]]:
+        found: dict[str | None, list[Running]] = {}
+        for one in self._running:
+            found.setdefault(one.program.package, []).append(one)
+        return found
+
+    def _fitting(self, start: Started) -> list[Running]:
+        """The programs that a launch may mean."""
+        package, plugin = start.package.value, start.plugin.value
         # pluginlib knows nodelets of all packages, and a launch file names that of the loader beside them.
-        anywhere = bool(start.plugin.value) and start.package.value == "nodelet"
-        if not anywhere and start.package.value not in (None, program.package):
-            return False
-        if start.plugin.value:
-            return bool(program.plugin) and self._is_plugin(program, start.plugin.value)
-        executable = start.executable.value or ""
-        return bool(program.executable) and executable in (
-            program.executable, program.executable.removesuffix(".py"),
-        )  # fmt: skip
+        anywhere = package is None or (bool(plugin) and package == "nodelet")
+        programs = self._running if anywhere else self._by_package.get(package, [])
+        if plugin:
+            return [one for one in programs if one.program.plugin and self._is_plugin(one.program, plugin)]
+        named = ((one, one.program.executable) for one in programs if one.program.executable)
+        return [one for one, name in named if start.executable.value in (name, name.removesuffix(".py"))]
 
     def _kinds(self, cls) -> frozenset[str]:
         return self.calls.kinds_of(
@@ -232,46 +238,46 @@ class Join:
             index = rows[index].outer
         return tuple(GuardAt(g.kind, g.text, fn.source.path, g.line, fn.name) for g in reversed(found))
 
-    def _triggers(self) -> dict[int, list[Trigger]]:
-        found: dict[int, list[Trigger]] = {}
+    def _triggers(self) -> dict[Fn, list[Trigger]]:
+        found: dict[Fn, list[Trigger]] = {}
         for site in self.sites.endpoints:
             names = sorted({value.text for value in site.names if value.text}) or [site.written]
             for fn in site.callbacks:
                 trigger = Trigger(_TRIGGERS[site.role], " or ".join(names), site.use.fn.source.path, site.use.call.line)
-                found.setdefault(id(fn), []).append(trigger)
+                found.setdefault(fn, []).append(trigger)
         for timer in self.sites.timers:
             for fn in timer.callbacks:
                 use = timer.use
-                found.setdefault(id(fn), []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
+                found.setdefault(fn, []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
         return found
 
-    def ways(self, fn: Fn, functions: set[int] | None = None) -> list[Way]:
+    def ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
         leading = self._leads_to(fn)
-        key = (id(fn), leading if functions is None else leading & functions)
+        key = (fn, leading if functions is None else leading & functions)
         known = self._ways.get(key)
         if known is None:
             known = self._ways[key] = self._walked(fn, functions, 0, ())
         return known
 
     @cached_method
-    def _leads_to(self, fn: Fn) -> frozenset[int]:
-        """The functions from which a function may be reached, by their id()."""
+    def _leads_to(self, fn: Fn) -> frozenset[Fn]:
+        """The functions from which a function may be reached."""
 
         def above(one: Fn) -> list[Fn]:
             around = self.code.enclosing(one)
-            callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
+            callers = [caller for caller, _ in self.code.callers.get(one, ())]
             return callers if around is None else [*callers, around]
 
-        return frozenset(map(id, walk(above(fn), above)))
+        return frozenset(walk(above(fn), above))
 
-    def _walked(self, fn: Fn, functions: set[int] | None, depth: int, seen: tuple[int, ...]) -> list[Way]:
-        found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]
-        if id(fn) in seen or depth > _DEEPEST:
+    def _walked(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
+        found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
+        if fn in seen or depth > _DEEPEST:
             return found
-        here = (*seen, id(fn))
-        for caller, call in self.code.callers.get(id(fn), ()):
-            if functions is not None and id(caller) not in functions:
+        here = (*seen, fn)
+        for caller, call in self.code.callers.get(fn, ()):
+            if functions is not None and caller not in functions:
                 continue
             own = self.guards(caller, call.guard)
             for way in self._walked(caller, functions, depth + 1, here):
@@ -381,15 +387,20 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        key = (id(site.use), id(owner.values), id(owner.functions))
-        if key not in self._sites_of:
-            # What code that the node does not run passes to its functions is none of its names.
-            names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
-            if all(name.text is None for name in names):
-                names = self.sites.names(site.use, site.prefix, owner.values)
-            type_ = site.type or self.sites.type_of(site.use, owner.values)
-            self._sites_of[key] = owner, site._replace(names=names, type=type_)
-        return self._sites_of[key][1]
+        settings, arguments = owner.values.settings, owner.values.arguments
+        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments), [])
+        for _, rests_on, found in known:
+            if all(settings.get(name) == value for name, value in rests_on.items()):
+                return found
+        self.values.asked.clear()
+        # What code that the node does not run passes to its functions is none of its names.
+        names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
+        if all(name.text is None for name in names):
+            names = self.sites.names(site.use, site.prefix, owner.values)
+        type_ = site.type or self.sites.type_of(site.use, owner.values)
+        found = site._replace(names=names, type=type_)
+        known.append((owner, dict(self.values.asked), found))
+        return found
 
     def _endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
@@ -495,14 +506,14 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function: dict[int, list[Owner]] = {}
+        self._by_function: dict[Fn, list[Owner]] = {}
         for one in running:
             for number in one.functions:
                 self._by_function.setdefault(number, []).append(one)
 
     def of(self, use: FrameworkCall) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
-        found = self._by_function.get(id(use.fn), [])
+        found = self._by_function.get(use.fn, [])
         if self.launched or found:
             return found
         built = [one for one in self.running if use.fn.source.path in one.program.files]

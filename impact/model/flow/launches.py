@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from ....edges import processes
-from ...facts.store import encodable
+from ...facts.store import remembered
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, file_values
@@ -87,18 +87,8 @@ def launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1) -> t
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
     content of all that it rests on. code: gives the code of the workspace, joined; not called where nothing is
     started. jobs: processes to use."""
-    store = workspace.gathered.store
-    key = stamp(workspace)
-    known = store.memo("launches", key) if store is not None else None
-    if known is not None:
-        try:
-            return msgspec.msgpack.decode(known, type=tuple[Launch, ...])
-        except msgspec.MsgspecError:
-            pass  # of another version: made anew
-    found = tuple(_launches(workspace, code, jobs))
-    if store is not None:
-        store.remember("launches", encodable([(key, found)]))
-    return found
+    store, key = workspace.gathered.store, stamp(workspace)
+    return remembered(store, "launches", key, tuple[Launch, ...], lambda: tuple(_launches(workspace, code, jobs)))
 
 
 def _launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
@@ -211,7 +201,7 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
     """The full names that a node's code uses, before remapping."""
     bare = one._replace(instance=instance._replace(remaps=()))
     for site in join.sites.endpoints:
-        if id(site.use.fn) in one.functions:
+        if site.use.fn in one.functions:
             values = site.names
             if not site.implied:
                 values = join.sites.names(site.use, site.prefix, one.values)
@@ -222,7 +212,7 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
 def _parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
     for use in join.calls.doing("parameter"):
-        if id(use.fn) in one.functions:
+        if use.fn in one.functions:
             found.update(value.text for value in join.asked(use) if value.text)
     return found
 

@@ -32,11 +32,11 @@ class Loaded(NamedTuple):
         return ros1_remapped(name, self.name, self.remaps)
 
 
-def loads(calls: Calls, functions: set[int], values: FlowValues, node: str) -> Iterator[Loaded]:
-    """What a program loads. functions: id()s of those it runs; values: what expressions are worth in it; node: the full
+def loads(calls: Calls, functions: set[Fn], values: FlowValues, node: str) -> Iterator[Loaded]:
+    """What a program loads. functions: those it runs; values: what expressions are worth in it; node: the full
     name of its node."""
     for use in calls.doing("load"):
-        if id(use.fn) not in functions:
+        if use.fn not in functions:
             continue
         for way in _ways(calls, use.fn, functions):
             inside = values.called(way)
@@ -48,14 +48,14 @@ def loads(calls: Calls, functions: set[int], values: FlowValues, node: str) -> I
                         yield Loaded(full, plugin.text, tuple(_remaps(calls, use, inside)), use)
 
 
-def _ways(calls: Calls, fn: Fn, functions: set[int], depth: int = 0) -> Iterator[dict[int, FlowCall]]:
-    """The calls through which a function is reached: for each way, the call by the id() of the function called."""
+def _ways(calls: Calls, fn: Fn, functions: set[Fn], depth: int = 0) -> Iterator[dict[Fn, FlowCall]]:
+    """The calls through which a function is reached: for each way, the call by the function called."""
     number = 0
-    for caller, call in calls.code.callers.get(id(fn), ()) if depth < _DEEPEST else ():
-        if id(caller) in functions and number < _MOST:
+    for caller, call in calls.code.callers.get(fn, ()) if depth < _DEEPEST else ():
+        if caller in functions and number < _MOST:
             for way in _ways(calls, caller, functions, depth + 1):
                 number += 1
-                yield {**way, id(fn): call}
+                yield {**way, fn: call}
     if not number:
         yield {}
 

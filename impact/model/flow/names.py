@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 
@@ -86,6 +87,7 @@ _SUBSTITUTION = re.compile(r"\{(\w*)\}")
 _LEGAL = re.compile(r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*\Z")
 
 
+@lru_cache(maxsize=10_000)
 def ros2_name(name: str, node: str, namespace: str) -> str:
     """The full name that a ROS 2 node uses for a topic or service before remapping. node: its name without namespace.
 

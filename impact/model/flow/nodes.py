@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeVar
 
 from ....edges.memory import cached_method
 from ....edges.reach import walk
@@ -11,6 +11,8 @@ from ...facts.flow import FlowExpr
 from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
 from .endpoints import Sites
 from .types import parsed
+
+_Thing = TypeVar("_Thing")
 
 # Kinds of arguments that may hand on a function.
 _HANDING = frozenset(("function", "name", "bind"))
@@ -50,7 +52,6 @@ class CodeReach:
 
     def __init__(self, sites: Sites):
         self.sites, self.code = sites, sites.code
-        self._held: dict[int, list[Cls]] = {}
         # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
         self._loaded: dict[str, str] = {}
         for source in self.code.sources:
@@ -63,12 +64,12 @@ class CodeReach:
             if fn.is_lambda:
                 self._lambdas.setdefault((fn.source.path, fn.scope), []).append(fn)
 
-    def of(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[int], set[str]]:
-        """Functions (by id()) and classes (by name) reached from some functions, and from objects of some classes."""
-        functions: set[int] = set()
+    def of(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
+        """Functions and classes (by name) reached from some functions, and from objects of some classes."""
+        functions: set[Fn] = set()
         names: set[str] = set()
         queue: list[Fn] = list(roots)
-        begun = {id(fn) for fn in queue}
+        begun = set(queue)
         made: list[Cls] = list(classes)
         while queue or made:
             while made:
@@ -82,53 +83,41 @@ class CodeReach:
             if not queue:
                 break
             fn = queue.pop()
-            if id(fn) in functions:
+            if fn in functions:
                 continue
             loaded = self._loaded.get(fn.facts.owner)
-            if loaded is not None and loaded not in names and id(fn) not in begun:
+            if loaded is not None and loaded not in names and fn not in begun:
                 continue  # one of many that may be loaded at run time: a node of its own
-            functions.add(id(fn))
+            functions.add(fn)
             further, objects = self.edges(fn)
-            queue.extend(further)
-            made.extend(cls for cls in objects if cls.name not in names)
+            queue += [one for one in further if one not in functions]
+            if objects:
+                made += [cls for cls in objects if cls.name not in names]
         return functions, names
 
+    @cached_method
     def held(self, cls: Cls) -> list[Cls]:
         """Classes of the members that objects of a class hold."""
-        known = self._held.get(id(cls.facts))
-        if known is None:
-            known = self._held[id(cls.facts)] = []
-            for member in cls.facts.members:
-                if not member.type or _points(member.type):
-                    continue  # made elsewhere, or by this class with code that is followed
-                kind = self.code.meant_type(member.type, cls.source, cls.name)
-                inner = self.code.class_of(kind.name, cls.source, cls.name) if kind.name else None
-                if inner is not None:
-                    known.append(inner)
-        return known
+        # What is pointed to is made elsewhere, or by this class with code that is followed.
+        types = (member.type for member in cls.facts.members if member.type and not _points(member.type))
+        found = (self.code.class_meant(type_, cls.source, cls.name) for type_ in types)
+        return [inner for inner in found if inner is not None]
 
     @cached_method
-    def edges(self, fn: Fn) -> tuple[list[Fn], list[Cls]]:
+    def edges(self, fn: Fn) -> tuple[Sequence[Fn], Sequence[Cls]]:
         """Functions that a function may lead to, and classes of objects that it makes."""
         code = self.code
         further = list(self._lambdas.get((fn.source.path, fn.name), ()))
-        objects: list[Cls] = []
         for call in fn.facts.calls:
             further.extend(code.targets(call.callee, fn))
             for argument in call.arguments:
                 if argument.kind in _HANDING:
                     further.extend(self._handed(argument, fn))
-        for name, _, _ in made_in(fn, code):
-            cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
-            if cls is not None:
-                objects.append(cls)
-        for each in fn.facts.assignments:
-            if each.type and not _points(each.type):
-                kind = code.meant_type(each.type, fn.source, fn.scope)
-                cls = code.class_of(kind.name, fn.source, fn.scope) if kind.name else None
-                if cls is not None:
-                    objects.append(cls)
-        return further, objects
+        types = [name for name, _, _ in made_in(fn, code)]
+        types += [each.type for each in fn.facts.assignments if each.type and not _points(each.type)]
+        found = (code.class_meant(type_, fn.source, fn.scope) for type_ in types)
+        # What comes last is looked at first, so the last of those that are named twice is the one to keep.
+        return _last_of_each(further), _last_of_each(cls for cls in found if cls is not None)
 
     def _handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
         """Functions outside of classes that an argument hands on; methods are reached through their class."""
@@ -137,6 +126,11 @@ class CodeReach:
         if value.kind in ("function", "name") and "." not in value.text and tail(value.text) in self.code.by_tail:
             return [one for one in self.code.targets(value.text, fn) if not one.facts.owner]
         return []
+
+
+def _last_of_each(found: Iterable[_Thing]) -> tuple[_Thing, ...]:
+    """Things once each, where they stand for the last time."""
+    return tuple(reversed(dict.fromkeys(reversed(list(found)))))
 
 
 def _points(type_: str) -> bool:

@@ -10,7 +10,7 @@ from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import follow
 from ..launch.result import Launched, Remap, Started
 from ..workspace import Workspace
-from .names import NameRefused, RemappingRule, ros1_remapped, ros2_remapped
+from .names import RemappingRule, ros1_remapped, ros2_remapped
 
 
 class InWorkspace:
@@ -108,6 +108,3 @@ def instances(all_started: Launched, own_name: str, started: Started) -> Instanc
     settings = {key: value for key, value in values.items() if value is not None}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)
-
-
-__all__ = ["InWorkspace", "Instance", "NameRefused", "instances", "launch_kind", "launched"]

@@ -19,13 +19,13 @@ _DEEPEST = 4
 
 class TemplateArgument(NamedTuple):
     """A type that is given for a parameter. text: as written; source, scope: where. cls: the class that gives it by
-    deriving, or that holds such an object, empty for none; fn: the function that does, by its id(), 0 for none."""
+    deriving, or that holds such an object, empty for none; fn: the function that does."""
 
     text: str
     source: CodeFile
     scope: str
     cls: str = ""
-    fn: int = 0
+    fn: Fn | None = None
 
 
 class Templates:
@@ -70,10 +70,10 @@ class Templates:
         return None
 
     def _of_callers(self, fn: Fn, number: int) -> Iterator[tuple[TemplateArgument, Fn | None]]:
-        for caller, call in self.code.callers.get(id(fn), ()):
+        for caller, call in self.code.callers.get(fn, ()):
             types = split_at_commas(call.types) if call.types else []
             if number < len(types):
-                yield TemplateArgument(types[number], caller.source, caller.scope, "", id(caller)), caller
+                yield TemplateArgument(types[number], caller.source, caller.scope, "", caller), caller
 
     def _of_class(self, cls: Cls, number: int, depth: int = 0) -> Iterator[tuple[TemplateArgument, Fn | None]]:
         for arguments, given, around in self._instances.get(tail(cls.name), ()) if depth <= _DEEPEST else ():
@@ -96,7 +96,7 @@ class Templates:
             if "<" in text:
                 kind = parsed(text)
                 if kind.arguments and tail(kind.name) in templates:
-                    given = TemplateArgument(kind.name, source, scope, cls, id(fn) if fn is not None else 0)
+                    given = TemplateArgument(kind.name, source, scope, cls, fn)
                     found.setdefault(tail(kind.name), []).append((kind.arguments, given, fn))
 
         for source in self.code.sources:

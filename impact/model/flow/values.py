@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
-from itertools import product
+from itertools import islice, product
 from typing import NamedTuple
 
 from ...facts.flow import FlowCall, FlowExpr
@@ -57,36 +57,37 @@ class FlowValues:
         self,
         calls: Calls,
         settings: Mapping[str, str] | None = None,
-        arguments: Sequence[str] | None = None,
-        way: Mapping[int, FlowCall] | None = None,
-        within: Collection[int] | None = None,
+        arguments: tuple[str, ...] | None = None,
+        way: Mapping[Fn, FlowCall] | None = None,
+        within: Collection[Fn] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
         arguments: of the command line, without the program's name; None where they are not known. way: the only call
-        through which a function is reached, by the function's id(). within: the functions that run, by their id()s, all
-        when None."""
+        through which a function is reached, by the function. within: the functions that run, all when None."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
+        # Settings that were asked for, by name, with what they are.
+        self.asked: dict[str, str | None] = {}
 
-    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> FlowValues:
+    def under(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments."""
         return self._other(settings, arguments, self.way, self.within)
 
-    def run(self, functions: Collection[int]) -> FlowValues:
-        """The same code where only some functions run, by their id()s: what others pass to them does not count."""
+    def run(self, functions: Collection[Fn]) -> FlowValues:
+        """The same code where only some functions run: what others pass to them does not count."""
         return self._other(self.settings, self.arguments, self.way, functions)
 
-    def called(self, way: Mapping[int, FlowCall]) -> FlowValues:
-        """The same code as far as it is reached through some calls, by the id() of the function called."""
+    def called(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
+        """The same code as far as it is reached through some calls, by the function called."""
         return self._other(self.settings, self.arguments, way, self.within) if way else self
 
     def _other(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
-        other._budget = self._budget
+        other._budget, other.asked = self._budget, self.asked
         return other
 
     def of(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -129,10 +130,8 @@ class FlowValues:
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
 
     def _joined(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = [list(dict.fromkeys(self._of(part, fn, line, seen)))[:_MOST] for part in value.parts]
-        for number, row in enumerate(product(*pieces)):
-            if number >= _MOST:
-                return
+        pieces = [_first(self._of(part, fn, line, seen)) for part in value.parts]
+        for row in islice(product(*pieces), _MOST):
             unknown = next((one for one in row if one.text is None), None)
             if unknown is not None:
                 yield unknown
@@ -222,7 +221,7 @@ class FlowValues:
                 for member in cls.facts.members:
                     if cls.name == variable.owner and member.name == variable.name and member.value is not None:
                         holder = next(iter(self.code.functions_of_class(cls.name)), fn)
-                        if holder.source is cls.source or member.value.kind == "text":
+                        if holder.source.path == cls.source.path or member.value.kind == "text":
                             yield from self._of(member.value, holder, member.line, seen)
         elif variable.kind == "global":
             yield from self._constant(variable, fn, seen)
@@ -288,8 +287,8 @@ class FlowValues:
     def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter."""
         number = 0
-        only = self.way.get(id(fn))
-        for caller, call in self.code.callers.get(id(fn), ()):
+        only = self.way.get(fn)
+        for caller, call in self.code.callers.get(fn, ()):
             if (only is not None and call is not only) or not self._runs(caller):
                 continue
             argument = _argument(call.arguments, place, name)
@@ -315,7 +314,7 @@ class FlowValues:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _runs(self, fn: Fn) -> bool:
-        return self.within is None or id(fn) in self.within
+        return self.within is None or fn in self.within
 
     @cached_property
     def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
@@ -382,12 +381,12 @@ class FlowValues:
                 return
         returned = False
         for target in self.code.targets(callee, fn):
-            if ("returns", id(target)) in seen:
+            if ("returns", target) in seen:
                 continue
             for each in target.facts.assignments:
                 if each.operator == "return":
                     returned = True
-                    yield from self._of(each.value, target, each.line, (*seen, ("returns", id(target))))
+                    yield from self._of(each.value, target, each.line, (*seen, ("returns", target)))
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
@@ -395,7 +394,9 @@ class FlowValues:
         """The default of the parameter that a use declares or reads."""
         names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
         name = names[0] if names and names[0] is not None else ""
-        given = self.settings.get(name.lstrip("~").lstrip("/")) if name else None
+        setting = name.lstrip("~").lstrip("/")
+        given = self.settings.get(setting) if name else None
+        self.asked[setting] = given
         if given is not None:
             yield FlowValue(given, "launch", "", name)
             return
@@ -449,6 +450,16 @@ def beside(topic: str, name: str) -> str:
     """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
     head, slash, _ = topic.rpartition("/")
     return f"{head}{slash}{name}"
+
+
+def _first(values: Iterator[FlowValue]) -> list[FlowValue]:
+    """The first different values. What comes after them is not worked out."""
+    found: dict[FlowValue, None] = {}
+    for value in values:
+        found[value] = None
+        if len(found) == _MOST:
+            break
+    return list(found)
 
 
 def _argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -13,13 +12,12 @@ from ....edges.memory import kept_with
 from ...facts.extract import ExtractedFacts, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
-from ...facts.store import encodable
-from ...source_keys import code_stamp
+from ...facts.store import remembered
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
 from .callers import Callers, callers
 from .defined import DefinedInterfaces
-from .file_selection import code_kinds
+from .file_selection import code_kinds, stamp
 from .graph import Graph
 
 if TYPE_CHECKING:
@@ -60,7 +58,7 @@ class WorkspaceFlow:
     @cached_property
     def callers(self) -> Callers:
         """Who calls whom in its code, and what triggers it."""
-        return callers_of(self._workspace, self._store)
+        return remembered(self._store, "callers", _key(self._workspace), Callers, lambda: callers(self.code))
 
     @cached_property
     def launches(self) -> tuple[Launch, ...]:
@@ -210,33 +208,13 @@ def graph_of(
         start = launched(workspace, launch, arguments or {})
         code = flow_of(workspace).code
         return code.graph(root, rev, _unread(code), start)
-    key = _key(workspace)
-    known = store.memo("graph", key) if store is not None else None
-    if known is not None:
-        try:
-            return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
-        except msgspec.MsgspecError:
-            pass  # of another version: made anew
-    code = flow_of(workspace).code
-    graph = code.graph(unread=_unread(code))
-    if store is not None:
-        store.remember("graph", encodable([(key, graph)]))
+
+    def make() -> Graph:
+        code = flow_of(workspace).code
+        return code.graph(unread=_unread(code))
+
+    graph = remembered(store, "graph", _key(workspace), Graph, make)
     return msgspec.structs.replace(graph, root=root, rev=rev)
-
-
-def callers_of(workspace: Workspace, store) -> Callers:
-    """Who calls whom in a workspace. store: as for graph_of()."""
-    key = _key(workspace)
-    known = store.memo("callers", key) if store is not None else None
-    if known is not None:
-        try:
-            return msgspec.msgpack.decode(known, type=Callers)
-        except msgspec.MsgspecError:
-            pass  # of another version: made anew
-    found = callers(flow_of(workspace).code)
-    if store is not None:
-        store.remember("callers", encodable([(key, found)]))
-    return found
 
 
 def _unread(join: Join) -> list[str]:
@@ -244,9 +222,4 @@ def _unread(join: Join) -> list[str]:
 
 
 def _key(workspace: Workspace) -> bytes:
-    stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
-    gathered = facts_of(workspace)
-    for path in sorted(gathered.kinds):
-        row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
-        stamp.update(row.encode("utf-8", "surrogateescape"))
-    return stamp.digest()
+    return stamp(workspace, facts_of(workspace))

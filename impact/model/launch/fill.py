@@ -65,12 +65,12 @@ class Rewrite(NamedTuple):
 
 class ChangedFiles:
     """What becomes of the entries of parameter files, by the id() of the entries that it is made from: the same in all
-    launches of the same sources. rewritten: those entries and what a rewrite makes of them; plain: those entries, and
-    whether none of them holds a substitution."""
+    launches of the same sources. rewritten: those entries and what a rewrite makes of them; filled: those entries, the
+    places of those that hold a substitution, and all of them by what those are filled in as."""
 
     def __init__(self) -> None:
         self.rewritten: dict[tuple[int, Rewrite], tuple[tuple[ParameterEntry, ...], tuple[ParameterEntry, ...]]] = {}
-        self.plain: dict[int, tuple[tuple[ParameterEntry, ...], bool]] = {}
+        self.filled: dict[int, tuple[tuple[ParameterEntry, ...], list[int], dict[str, tuple[ParameterEntry, ...]]]] = {}
 
 
 class Filling:
@@ -103,11 +103,20 @@ class Filling:
 
     def substituted(self, entries: tuple[ParameterEntry, ...]) -> tuple[ParameterEntry, ...]:
         """Entries whose keys or values may hold substitutions, filled in where that can be done."""
-        known = self.changed.plain.get(id(entries))
+        known = self.changed.filled.get(id(entries))
         if known is None:
-            plain = not any("$(" in f"{entry.path}{entry.value}" for entry in entries)
-            known = self.changed.plain[id(entries)] = entries, plain
-        return entries if known[1] else tuple(map(self._substituted, entries))
+            places = [at for at, entry in enumerate(entries) if "$(" in f"{entry.path}{entry.value}"]
+            known = self.changed.filled[id(entries)] = entries, places, {"[]": entries}
+        _, places, made = known
+        filled = [self._substituted(entries[at]) for at in places]
+        # Values that cannot be hashed are told apart by how they are written, and so are 1 and True.
+        written = repr(filled)
+        if written not in made:
+            changed = list(entries)
+            for at, entry in zip(places, filled, strict=True):
+                changed[at] = entry
+            made[written] = tuple(changed)
+        return made[written]
 
     def _substituted(self, entry: ParameterEntry) -> ParameterEntry:
         path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)

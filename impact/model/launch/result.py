@@ -171,15 +171,20 @@ def file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntr
     """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
     node whose name is not known: then only what is for every node."""
     found: dict[str, ParameterEntry] = {}
+    meant: dict[tuple[str, ...], bool] = {}
     for entry in setting.entries or ():
+        path = entry.path
         if setting.plain:
-            found[".".join(entry.path)] = entry
+            found[".".join(path)] = entry
             continue
-        if "ros__parameters" not in entry.path:
+        if "ros__parameters" not in path:
             continue
-        split = entry.path.index("ros__parameters")
-        name = ".".join(entry.path[split + 1 :])
-        if name and _names_node(entry.path[:split], full_name):
+        split = path.index("ros__parameters")
+        keys = path[:split]
+        if keys not in meant:
+            meant[keys] = _names_node(keys, full_name)
+        name = ".".join(path[split + 1 :]) if meant[keys] else ""
+        if name:
             found.pop(name, None)
             found[name] = entry
     return found
