@@ -31,7 +31,7 @@ def told(folder: Path, cmake: str, target: str = "noetic", tools: str = "", **so
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(text)
     options = Options(targets=(target,), select=("missing-find-package",), cache=folder / "cache", jobs=1)
-    return [(f.severity, f.subject) for f in check(folder, options).findings if "links nothing" in f.message]
+    return [(f.severity, f.subject) for f in check(folder, options).findings if f.rule == "unlinked-package"]
 
 
 LINKED = "add_executable(plough plough.cpp)\ntarget_link_libraries(plough ${catkin_LIBRARIES})\n"

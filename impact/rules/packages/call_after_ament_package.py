@@ -25,7 +25,7 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, doubts_of_place,
 
 
 @rule(
-    texts=Text("{subject}() is called after ament_package(), at which CMake stops", "call it before ament_package()"),
+    texts=Text("{subject}() is called after ament_package(), so CMake stops", "call it before ament_package()"),
 )
 def call_after_ament_package(view: TargetView, package: Package):
     last = package.build.ament_package

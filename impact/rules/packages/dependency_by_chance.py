@@ -30,7 +30,7 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
 
 @rule(
     group="undeclared-package",
-    texts=Text("{use}, and `{subject}` only comes along with {sources}", DECLARE),
+    texts=Text("{use}, but `{subject}` is not declared and comes only through {sources}", DECLARE),
 )
 def dependency_by_chance(view: TargetView, package: Package):
     declared = view.declared(package)

@@ -37,9 +37,9 @@ from .install_rules import read_installs
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
         "target": Text("install(TARGETS) names `{subject}`, which is no target, so CMake stops", "add it, or drop it"),
-        "no destination": Text("install({kind}) has no {subject}, at which CMake stops", "add it"),
+        "no destination": Text("install({kind}) has no {subject}, so CMake stops", "add it"),
         "symlinks": Text(
-            "`colcon build --symlink-install` takes `{subject}` for the name of a folder", "write the folder itself"
+            "`colcon build --symlink-install` treats `{subject}` as the name of a folder", "write the folder itself"
         ),
         "early": Text("`{subject}` is used before catkin_package() sets it", "call catkin_package() before install()"),
         "never": Text("`{subject}` is set by catkin_package(), which is never called", "call catkin_package()"),

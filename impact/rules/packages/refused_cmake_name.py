@@ -55,19 +55,19 @@ _SHORTEST = 8
         "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
         "command": Text("`{subject}` is no command of CMake or of a known package", "did you mean `{replacement}`?"),
         "project": Text(
-            "the project is called `{subject}`, but package.xml names the package `{package}`, at which CMake stops",
+            "the project is called `{subject}`, but package.xml names the package `{package}`, so CMake stops",
             "project({package})",
         ),
-        "no target": Text("`{subject}` is no target, at which CMake stops", "name a target that the package adds"),
+        "no target": Text("`{subject}` is no target, so CMake stops", "name a target that the package adds"),
         "too early": Text(
-            "`{subject}` is used as a target before it is added, at which CMake stops", "add the target first"
+            "`{subject}` is used as a target before it is added, so CMake stops", "add the target first"
         ),
         "mixed": Text(
-            "`{subject}` is linked with PUBLIC or PRIVATE and without, at which CMake stops",
+            "`{subject}` is linked with PUBLIC or PRIVATE and without, so CMake stops",
             "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",
         ),
         "no value": Text(
-            "`{subject}` is not set, so that a property has no value, at which CMake stops",
+            "`{subject}` is not set, so that a property has no value, so CMake stops",
             "give project() a version",
         ),
         "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),

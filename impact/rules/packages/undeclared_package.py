@@ -44,9 +44,9 @@ runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
 
 @rule(
     texts={
-        "": Text("{use}, and nothing that `{package}` declares brings `{subject}`", DECLARE),
+        "": Text("{use}, but `{package}` does not depend on `{subject}`", DECLARE),
         "condition": Text(
-            "{use}, and `{package}` declares `{subject}` under `{condition}` alone",
+            "{use}, but `{package}` declares `{subject}` only under `{condition}`",
             "declare it without the condition, or use it under the same one",
         ),
     },

@@ -32,7 +32,7 @@ _TESTS = "ament_cmake_test"
 @rule(
     group="undeclared-package",
     texts=Text(
-        "`{command}` comes from `{subject}`, and nothing that `{package}` declares brings it",
+        "`{command}` comes from `{subject}`, but `{package}` does not depend on it",
         help="add `<test_depend>{subject}</test_depend>` to {manifest}, and find_package({subject} REQUIRED)",
     ),
 )

@@ -30,7 +30,7 @@ from .clean_machine import doubts_of_compiled
 
 @rule(
     texts=Text(
-        "`{include}` includes `{header}`, and nothing that `{package}` declares brings `{subject}`",
+        "`{include}` includes `{header}`, but `{package}` does not depend on `{subject}`",
         help="add `<depend>{subject}</depend>` to {manifest}",
     ),
 )

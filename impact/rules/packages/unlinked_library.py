@@ -48,7 +48,7 @@ _STARTS = tuple(start for start, _ in _COMPILED)
 
 @rule(
     texts=Text(
-        "`{target}` compiles `{header}` but links nothing that brings the library",
+        "`{target}` compiles `{header}` but does not link the library",
         "link the library to `{target}` with target_link_libraries()",
     ),
 )

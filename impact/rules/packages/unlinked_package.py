@@ -37,7 +37,7 @@ from .catkin_links import CatkinExports, linked_packages, list_linked, plain
             "`{target}` includes `{header}` but links nothing", "target_link_libraries({target} {item})"
         ),
         "unlinked": Text(
-            "`{target}` compiles `{header}` but links nothing that brings `{subject}`",
+            "`{target}` compiles `{header}` but does not link `{subject}`",
             "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
         ),
     },

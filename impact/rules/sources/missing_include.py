@@ -43,13 +43,13 @@ _LOST = "`{name}` is used without `<{subject}>`, "
 @rule(
     scope="target",
     texts={
-        "dropped": Text(_LOST + "which {by} {version}[[ of {horizon}]] no longer brings along", "#include <{subject}>"),
+        "dropped": Text(_LOST + "which {by} {version}[[ of {horizon}]] no longer includes", "#include <{subject}>"),
         "never": Text(
-            _LOST + "and nothing that is included brings it along with {by} {version}[[ of {horizon}]]",
+            _LOST + "and no included header includes it with {by} {version}[[ of {horizon}]]",
             "#include <{subject}>",
         ),
         "no interface": Text(
-            "`{subject}` is used, but `{owner}` has no such interface, and nothing that is included declares it",
+            "`{subject}` is used, but `{owner}` has no such interface, and no included header declares it",
             "define the interface, or use one that `{owner}` has",
         ),
     },
