@@ -350,19 +350,19 @@ def _pattern(name: str, count: int) -> dict[str, str]:
     return {"word": last, "before": rf"\b{before}\s*::\s*", "arguments": str(count)}
 
 
-def told_elsewhere() -> Callable[[str, str], bool]:
+def find_treated_elsewhere() -> Callable[[str, str], bool]:
     """What the reviewed tables treat, under any part of its name, and what some ROS package has or had."""
     reviewed = {name for row in all_rows() if not row.last_in for name in (row.old, row.new) if name}
     used = {row.pattern.word for row in all_uses().values() if row.pattern is not None and not row.last_in}
     ros = _of_ros_packages()
 
-    def told(kind: str, name: str) -> bool:
+    def is_treated(kind: str, name: str) -> bool:
         if kind.startswith("header"):
             return name in reviewed or name in ros
         last = name.rpartition("::")[2]
         return not reviewed.isdisjoint(_tails(name)) or last in used or name in ros
 
-    return told
+    return is_treated
 
 
 def _of_ros_packages() -> frozenset[str]:
@@ -488,7 +488,7 @@ def write(file: Path, key: str, rows: Iterable[dict]) -> None:
 
 def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> None:
     """Writes the tables of what went."""
-    reviewed = told_elsewhere()
+    reviewed = find_treated_elsewhere()
     everywhere = Elsewhere(suites, texts)
     changes: list[dict] = []
     uses: list[dict] = []

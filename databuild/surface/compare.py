@@ -386,17 +386,17 @@ def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
 def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     had, has = dict(old.interfaces), dict(new.interfaces)
 
-    def told(kind: str, what: str, name: str, **more: Any) -> VersionChange:
+    def change(kind: str, what: str, name: str, **more: Any) -> VersionChange:
         return VersionChange(old.package, "message", kind, what, f"{old.package}/{name}", **more)
 
     for name in sorted(had.keys() - has.keys()):
         homes = [p for p, s in after.surfaces.items() if p != new.package and name in dict(s.interfaces)]
         if len(homes) == 1:
-            yield told("moved", "interface", name, moved_to=homes[0], instead=f"{homes[0]}/{name}")
+            yield change("moved", "interface", name, moved_to=homes[0], instead=f"{homes[0]}/{name}")
         else:
-            yield told("removed", "interface", name)
+            yield change("removed", "interface", name)
     for name in sorted(has.keys() - had.keys()):
-        yield told("added", "interface", name, breaks=False)
+        yield change("added", "interface", name, breaks=False)
     for name in sorted(had.keys() & has.keys()):
         sections = {section.name: section for section in has[name].sections}
         wire = False
@@ -408,9 +408,9 @@ def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator
             wire = wire or mine != [(f.name, _type(f, old.package)) for f in now.fields]
             prefix = name if section.name == "message" else f"{name} {section.name}"
             for kind, what, member, more in _members(section, now, old.package):
-                yield told(kind, what, f"{prefix}.{member}", **more)
+                yield change(kind, what, f"{prefix}.{member}", **more)
         if wire:
-            yield told("wire", "interface", name, breaks=False)
+            yield change("wire", "interface", name, breaks=False)
 
 
 def _members(old: Section, new: Section, package: str) -> Iterator[tuple[str, str, str, dict[str, Any]]]:

@@ -245,29 +245,29 @@ def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[E
     """Differences of two entities; offered: all of that name in the new version."""
     changes: list[CppChange] = []
 
-    def told(kind: str, compatible: bool, *what: str) -> None:
+    def add_change(kind: str, compatible: bool, *what: str) -> None:
         changes.append(CppChange(kind, one.name, one, other, path, there, what, compatible))
 
     if one.deprecated is None and other.deprecated is not None:
-        told("deprecated", True)
+        add_change("deprecated", True)
     if one.kind == "enumerator" and other.kind == "enumerator":
         if one.value != other.value:
-            told("value", True)
+            add_change("value", True)
         return changes
     what = _what(one, other)
     if what:
-        told("signature", _compatible(one, other, what, offered), *what)
+        add_change("signature", _compatible(one, other, what, offered), *what)
     if one.value and other.value and one.value != other.value:
-        told("value", True)
+        add_change("value", True)
     if _defaults(one.parameters, other.parameters) or _template_defaults(one, other):
-        told("default", _family(one) != "function" or still_callable(one, offered))
+        add_change("default", _family(one) != "function" or still_callable(one, offered))
     if one.kind in CLASSES and other.kind in CLASSES and one.bases != other.bases:
-        told("base", {base.type for base in one.bases} <= {base.type for base in other.bases})
+        add_change("base", {base.type for base in one.bases} <= {base.type for base in other.bases})
     if one.access == "public" and other.access in ("protected", "private"):
-        told("access", False)
+        add_change("access", False)
     for trait in ("deleted", "pure", "final"):
         if trait in other.traits and trait not in one.traits:
-            told(trait, False)
+            add_change(trait, False)
     return changes
 
 

@@ -156,7 +156,7 @@ def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]
             if need.subject != name and all(p.name != name for p in need.providers):
                 continue
             used.append(f"{need.at.path}:{need.at.line}")
-            closure = view.closure(package) if closure is None else closure
+            closure = view.build_environment(package) if closure is None else closure
             if not view.answered(need.providers, closure) and package.name not in undeclared:
                 undeclared.append(package.name)
         for dependency in package.manifest.dependencies:

@@ -46,7 +46,7 @@ class Roles:
         """Everything that is installed along with what a package declares for a role: a key of KINDS."""
         declared = self._view.declared(package)
         start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-        return self._view.spread(start) | {package.name}
+        return self._view.transitive_dependencies(start) | {package.name}
 
     @property
     def farm_makes_tests(self) -> bool:
@@ -59,7 +59,7 @@ class Roles:
         test, but not what is declared to run. Source: bloom's Build-Depends, without those for tests from 0.11.0 on."""
         view = self._view
         start = [name for name, kinds in view.declared(package).items() if kinds & _BUILD_DEPENDS]
-        return view.widest_spread(start).union(view.preinstalled, (package.name,))
+        return view.widest_dependencies(start).union(view.preinstalled, (package.name,))
 
     @cached_method
     def handed_on(self, package: Package, role: str, promised: bool) -> frozenset[str]:
@@ -89,7 +89,7 @@ class Roles:
         launch files themselves; the command's own packages for what is made for them."""
         tool = "ros2launch" if self._view.target.ros == 2 else "roslaunch"
         if "launch" in path.rpartition("/")[2]:
-            return name in self._view.spread([tool])
+            return name in self._view.transitive_dependencies([tool])
         return name == tool or name in self._view.installed_with(tool)
 
     @cached_method
@@ -137,7 +137,7 @@ class Roles:
         """A name, and all that its manifest brings where it is not known what it exports."""
         if self._exported_here(name) is not None:
             return frozenset((name,))
-        return self._view.spread({name, *(provider.name for provider in self._view.cmake(name))})
+        return self._view.transitive_dependencies({name, *(provider.name for provider in self._view.cmake(name))})
 
     def _named(self, item: str) -> Iterable[str]:
         """The package of this name, or who answers find_package() of a system library's CMake name."""

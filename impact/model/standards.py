@@ -123,6 +123,6 @@ def may_be_set_elsewhere(view: TargetView, package: Package) -> bool:
         return True
     if any("include(" in reason for _, reason in package.build.unresolved):
         return True
-    found = view.spread(f.name for f in package.build.found)
+    found = view.transitive_dependencies(f.name for f in package.build.found)
     own = [view.workspace.packages[name] for name in found if name in view.workspace.packages]
     return any(path.endswith((".cmake", ".cmake.in", ".cmake.em")) for other in own for path in other.files)

@@ -117,7 +117,7 @@ def _fits(wanted: list[str], given: list[str]) -> bool:
 
 def _is_declared_by(view: TargetView, packages: Iterable[str], last: str) -> bool:
     """Whether some of these packages, or of what is installed with them, may declare a parameter that ends so."""
-    for name in view.spread(packages):
+    for name in view.transitive_dependencies(packages):
         if name in view.workspace.packages:
             return True
         offer = view.offers.package(name)

@@ -68,7 +68,7 @@ class UnknownContents:
         stem = re.split(r"[^a-z]", wanted.lower())[0]
         return self.is_made_apart(package, wanted) or (
             len(stem) >= _SHORTEST
-            and any(stem in name and self.is_carried_library(name) for name in self._view.closure(package))
+            and any(stem in name and self.is_carried_library(name) for name in self._view.build_environment(package))
         )
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
@@ -85,7 +85,7 @@ class UnknownContents:
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
         (Gazebo and its metapackages come from their own): they may bring any system library."""
-        return self._opaque_along(self._view.closure(package))
+        return self._opaque_along(self._view.build_environment(package))
 
     def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
         """Those of the names whose dependencies are not known anywhere."""
@@ -107,11 +107,11 @@ class UnknownContents:
 
     @cached_method
     def _unknown_along(self, package: Package) -> tuple[str, ...]:
-        return self.list_unknown(self._view.closure(package))
+        return self.list_unknown(self._view.build_environment(package))
 
     @cached_property
     def _with_interfaces(self) -> frozenset[str]:
-        return self._view.spread(_WITH_INTERFACES)
+        return self._view.transitive_dependencies(_WITH_INTERFACES)
 
     @cached_method
     def _made_apart(self, package: Package) -> tuple[str, ...]:

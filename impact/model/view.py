@@ -221,7 +221,7 @@ class TargetView:
         """The year of the highest C++ standard that a part of a package may be compiled under on this target, as far
         as the workspace tells: what it sets itself or packages that it finds do, C++17, or the compiler's default."""
         years = [2017, default_standard(self.target) or 2017]
-        for name in {package.name, *self.spread(found.name for found in package.build.found)}:
+        for name in {package.name, *self.transitive_dependencies(found.name for found in package.build.found)}:
             own = self.workspace.packages.get(name)
             if own is not None:
                 years.extend(standard_year(number) for number, *_ in own.build.standards)
@@ -230,7 +230,9 @@ class TargetView:
 
     def language_asked(self, package: Package) -> int:
         """The same, and what the released packages ask for that come along with those which it finds."""
-        found = self.spread(found.name for found in package.build.found) - self.workspace.packages.keys()
+        found = (
+            self.transitive_dependencies(found.name for found in package.build.found) - self.workspace.packages.keys()
+        )
         return max(self.language(package), *(standard_year(self.offers.standard(name)) for name in found), 0)
 
     def built(self, role: str) -> bool:
@@ -409,7 +411,7 @@ class TargetView:
     @cached_property
     def installed(self) -> frozenset[str]:
         """Packages and rosdep keys that every machine has by the configuration, and what is installed with them."""
-        return self.spread(self.config.installed)
+        return self.transitive_dependencies(self.config.installed)
 
     @cached_method
     def is_standard(self, header: str) -> bool:
@@ -480,7 +482,7 @@ class TargetView:
     def around(self, path: str) -> frozenset[str]:
         """Who could answer an include path, all that is installed along with them, and the platform libraries that
         these names stand for; empty when nobody could."""
-        names = self.spread(provider.name for provider in self.header(path))
+        names = self.transitive_dependencies(provider.name for provider in self.header(path))
         return names.union(*map(self.libraries_of, names))
 
     @cached_method
@@ -567,7 +569,7 @@ class TargetView:
             return False
         if path.endswith(".py") or change.kind.startswith("python"):
             return True
-        names = self.closure(package)
+        names = self.build_environment(package)
         if head in names or (any(head in (p.name, p.package) for p in self.cmake(head)) and head in names):
             return True
         roots = include_roots(head)
@@ -599,14 +601,14 @@ class TargetView:
         return tuple(d.name for d in released if d.kind in _INSTALLED_WITH)
 
     @cached_method
-    def closure(self, package: Package) -> frozenset[str]:
+    def build_environment(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        return self.spread(self._built_with(package)).union(self.preinstalled, (package.name,))
+        return self.transitive_dependencies(self._built_with(package)).union(self.preinstalled, (package.name,))
 
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
         """Everything on a machine that has just what all packages of the workspace declare."""
-        return frozenset().union(*(self.closure(package) for package in self.everyone()))
+        return frozenset().union(*(self.build_environment(package) for package in self.everyone()))
 
     @cached_property
     def apt(self) -> Apt:
@@ -616,18 +618,18 @@ class TargetView:
     @cached_property
     def preinstalled(self) -> frozenset[str]:
         """What the build farm puts on every machine besides the platform's compiler: the workspace of ROS 2."""
-        return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
+        return self.transitive_dependencies(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     @cached_method
     def may_bring(self, package: Package) -> frozenset[str]:
-        """closure(), and all that packages whose manifests are not known for their version here bring in the next one
-        that is, or in any distro: what is not in it is sure to be missing, unless something of unknown_contents
-        may come along."""
-        return self.widest_spread(self.closure(package))
+        """build_environment(), and all that packages whose manifests are not known for their version here bring in the
+        next one that is, or in any distro: what is not in it is sure to be missing, unless something of
+        unknown_contents may come along."""
+        return self.widest_dependencies(self.build_environment(package))
 
-    def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
-        """spread(), and all that packages whose manifests are not known for their version here bring in the next one
-        that is, or in any distro."""
+    def widest_dependencies(self, names: Iterable[str]) -> frozenset[str]:
+        """transitive_dependencies(), and all that packages whose manifests are not known for their version here bring
+        in the next one that is, or in any distro."""
         return frozenset().union(*(_whole(name, self._possibly_with, self._widest) for name in names))
 
     @cached_property
@@ -651,12 +653,12 @@ class TargetView:
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
 
-    def spread(self, names: Iterable[str]) -> frozenset[str]:
+    def transitive_dependencies(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
-        return self._spread(frozenset(names))
+        return self._find_transitive(frozenset(names))
 
     @cached_method
-    def _spread(self, names: frozenset[str]) -> frozenset[str]:
+    def _find_transitive(self, names: frozenset[str]) -> frozenset[str]:
         return frozenset().union(*(_whole(name, self.installed_with, self._whole) for name in names))
 
     @cached_method
@@ -910,7 +912,7 @@ class TargetView:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
         ros_environment, or before that roslib."""
         providers = Provider("ros", "ros_environment"), Provider("ros", "roslib")
-        if self.answered(providers, self.closure(package)):
+        if self.answered(providers, self.build_environment(package)):
             return
         read = [(use.name, use.at, use.conditions) for use in package.build.uses if use.kind == "environment"]
         for at, _, conditions in package.build.stops:

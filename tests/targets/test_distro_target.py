@@ -274,10 +274,10 @@ def test_every_build_type_of_a_package():
 
 
 def test_closure_follows_exports_and_ends_at_keys():
-    found = target("jazzy").closure("nav2_bringup", ("exec", "build_export"))
+    found = target("jazzy").transitive_dependencies("nav2_bringup", ("exec", "build_export"))
     assert {"nav2_controller", "rclcpp", "rcl", "tinyxml2_vendor"} <= found
     assert "nav2_bringup" not in found
-    assert target("jazzy").closure("no_such_package") == frozenset()
+    assert target("jazzy").transitive_dependencies("no_such_package") == frozenset()
 
 
 def test_dependencies_of_the_nearest_distro_that_knows_a_package():

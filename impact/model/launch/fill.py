@@ -95,7 +95,7 @@ class Filling:
         if unresolved not in self.unresolved[-20:]:
             self.unresolved.append(unresolved)
 
-    def told(self, text: LaunchText, line: int, what: str) -> LaunchText:
+    def note_unknown(self, text: LaunchText, line: int, what: str) -> LaunchText:
         """The text; where it is not known that is listed."""
         if text.value is None:
             self.miss(line, f"{what} `{text.shown}`", *text.reasons)
@@ -337,7 +337,7 @@ class Filling:
             return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
         used: list[tuple[str, ...]] = [expression.assumed]
 
-        def told(kind: str, name: str, *default: str) -> str:
+        def read_value(kind: str, name: str, *default: str) -> str:
             text = self.fill_arg(ValuePart(kind, name, tuple(map(literal, default))))
             if text.value is None:
                 raise CannotTell(*text.reasons)
@@ -345,15 +345,15 @@ class Filling:
             return text.value
 
         def argument(name: str) -> Any:
-            return ros1_value(told("arg", name))
+            return ros1_value(read_value("arg", name))
 
         functions: dict[str, Any] = {}
         names: dict[str, Any] = {"pi": math.pi}
         if piece.text == "roslaunch":
             functions = {
                 "arg": argument,
-                "env": partial(told, "env"),
-                "optenv": lambda name, default="": told("env", name, default),
+                "env": partial(read_value, "env"),
+                "optenv": lambda name, default="": read_value("env", name, default),
                 "find": lambda package: f"$(find {package})",
                 "dirname": lambda: self.fill_dirname(piece).value,
             }

@@ -173,7 +173,7 @@ class _Launch(Filling):
         self.scope.arguments[name] = text
 
     def name_of(self, action: Action) -> str | None:
-        return self.told(self.field(action, "name"), action.line, f"name of {action.kind}").value
+        return self.note_unknown(self.field(action, "name"), action.line, f"name of {action.kind}").value
 
     def do_argument(self, action: Action) -> None:
         name = self.name_of(action)
@@ -239,12 +239,12 @@ class _Launch(Filling):
         self.scope.remaps.append(self.remap(action))
 
     def remap(self, action: Action) -> Remap:
-        old = self.told(self.field(action, "from"), action.line, "remapping from")
-        new = self.told(self.field(action, "to"), action.line, "remapping to")
+        old = self.note_unknown(self.field(action, "from"), action.line, "remapping from")
+        new = self.note_unknown(self.field(action, "to"), action.line, "remapping to")
         return Remap(old, new, self.at(action.line), tuple(self.open[self.scope.open :]))
 
     def do_include(self, action: Action) -> None:
-        file = self.told(self.field(action, "file"), action.line, "include")
+        file = self.note_unknown(self.field(action, "file"), action.line, "include")
         if file.value is None:
             return
         place = self.place(file.value)
@@ -383,7 +383,8 @@ class _Launch(Filling):
         name = self.field(action, "name")
         if name.value is not None and name.value[:1] == "~":
             name = known(name.value[1:], name.assumed)
-        full = self.told(within(namespace if namespace.value != "" else known("/"), name), action.line, "parameter")
+        place = within(namespace if namespace.value != "" else known("/"), name)
+        full = self.note_unknown(place, action.line, "parameter")
         if full.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
@@ -411,7 +412,7 @@ class _Launch(Filling):
         if below.value is not None and below.value[:1] == "~":
             below = known(below.value[1:].lstrip("/"), below.assumed)
         full = base if below.value == "" else within(base, below)
-        if self.told(full, action.line, "parameters below").value is None:
+        if self.note_unknown(full, action.line, "parameters below").value is None:
             return
         command = plain(action.get("command")) or "load"
         if command == "delete":
@@ -422,7 +423,7 @@ class _Launch(Filling):
         fill = substitute is not None and truth_of(self.text(substitute)) is True
         file, content = action.get("file"), action.get("text")
         if file is not None:
-            text = self.told(self.text(file), action.line, "parameters")
+            text = self.note_unknown(self.text(file), action.line, "parameters")
             entries = self.entries(text.value, action.line) if text.value is not None else None
             assumed = text.assumed
         else:
@@ -485,7 +486,7 @@ class _Launch(Filling):
         )  # fmt: skip
         self.started.append(started)
         for key in _TEXTS:
-            self.told(getattr(started, key), action.line, f"{key} of {kind}")
+            self.note_unknown(getattr(started, key), action.line, f"{key} of {kind}")
         return started
 
     def ros_arguments(
@@ -541,7 +542,7 @@ class _Launch(Filling):
             container = self.inside(self.text(own))
         else:
             container = within(known("/"), self.field(action, "container"))
-        self.load(action, self.told(container, action.line, "container"))
+        self.load(action, self.note_unknown(container, action.line, "container"))
 
     def do_composable(self, action: Action) -> None:
         self.node2(action, self.container)

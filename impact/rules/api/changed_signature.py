@@ -112,7 +112,9 @@ def _list_reviewed_of(
     if not uses:
         return
     # A method that the package or what it is built with declares may be meant wherever its name is called.
-    within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
+    within = [
+        view.workspace.packages[name] for name in view.build_environment(package) if name in view.workspace.packages
+    ]
     own = {
         "cpp": {function for each in within for function in each.digest.functions},
         "python": {method for each in within for method in each.digest.methods},

@@ -68,7 +68,7 @@ def respell(view: TargetView, package: Package, include: IncludeUse, path: str) 
     at = include.at
     if not path or not view.certain(include.conditions) or view.environment.headers(path) is not True:
         return ()
-    if not view.answered(view.header(path), view.closure(package)):
+    if not view.answered(view.header(path), view.build_environment(package)):
         return ()
     # The column is that of `<` or the quotation mark.
     return (Replace(at.path, at.line, at.column + 1, include.path, path),)

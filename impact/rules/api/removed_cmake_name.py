@@ -97,7 +97,7 @@ def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
     """Whether a package that comes along is called like a system library, and so may have another version of it."""
     space = _fold(name.partition("::")[0])
     found = (one.name for one in package.build.found if one.how == "find_package")
-    return any(space in _fold(one) for one in view.spread(found) if view.is_package(one))
+    return any(space in _fold(one) for one in view.transitive_dependencies(found) if view.is_package(one))
 
 
 def _may_be_made(view: TargetView, package: Package, name: str) -> bool:

@@ -95,7 +95,7 @@ def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
     heads = (use.reference.package, _find_package_part(use.reference.name))
     named = [name for name in heads if name and view.is_package(name) and view.available(name)]
-    return named or sorted(name for name in view.closure(package) if name not in view.workspace.packages)
+    return named or sorted(name for name in view.build_environment(package) if name not in view.workspace.packages)
 
 
 def _find_package_part(name: str) -> str:

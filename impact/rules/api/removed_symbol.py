@@ -180,4 +180,6 @@ class _Headers:
             return False
         providers = view.header(path)
         keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
-        return not providers or any(p.kind == "ros" and not keys.isdisjoint(view.spread((p.name,))) for p in providers)
+        return not providers or any(
+            p.kind == "ros" and not keys.isdisjoint(view.transitive_dependencies((p.name,))) for p in providers
+        )

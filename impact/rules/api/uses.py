@@ -69,7 +69,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         for change in view.changes("call-changed")
         if view.offers.package(change.package) is None  # else its surfaces know more
     }
-    near = view.closure(package)
+    near = view.build_environment(package)
     own = {name for one in view.workspace for name in one.digest.defined}
     unserved: list[tuple[CppApiUse, Availability]] = []
     overridden: set[tuple[str, str]] = set()

@@ -31,7 +31,11 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
     if package.build.ament_package is None:
         written = package.build.catkin_package is None and any(i.kind == "export" for i in package.build.installs)
         near = {provider.name for name in handed for provider in view.cmake(name)[:1]}
-        return AmentExports([], frozenset(), frozenset(handed) | view.spread(near)) if handed and written else None
+        return (
+            AmentExports([], frozenset(), frozenset(handed) | view.transitive_dependencies(near))
+            if handed and written
+            else None
+        )
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):

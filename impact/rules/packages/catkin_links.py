@@ -52,7 +52,7 @@ class CatkinExports:
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
         return any(library in item.lower() for item in given)
 
-    def closure(self, names: Iterable[str]) -> frozenset[str] | None:
+    def transitive_dependencies(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""
         found = frozenset(walk(names, lambda name: self._dependencies(name) or ()))
         return None if any(self._dependencies(name) is None for name in found) else found

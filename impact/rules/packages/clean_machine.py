@@ -25,8 +25,8 @@ def circular(view: TargetView, package: Package, name: str) -> bool:
     """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
     other = view.workspace.packages.get(name)
     if other is None:
-        return package.name in view.spread([name])
-    return package.name in view.closure(other) or any(
+        return package.name in view.transitive_dependencies([name])
+    return package.name in view.build_environment(other) or any(
         provider.name == package.name for need in view.needs(other) for provider in need.providers[:1]
     )
 

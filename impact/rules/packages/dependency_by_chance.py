@@ -38,7 +38,7 @@ def dependency_by_chance(view: TargetView, package: Package):
         strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
         first = next((need for need in sorted(strong, key=weight) if is_chance(view, package, need, name)), None)
         if first is not None:
-            sources = tuple(d for d in declared if view.answered(first.providers, view.spread([d])))
+            sources = tuple(d for d in declared if view.answered(first.providers, view.transitive_dependencies([d])))
             yield Diagnostic(
                 first.at,
                 name,

@@ -46,7 +46,7 @@ def incomplete_metapackage(view: TargetView, package: Package):
     missing = [name for name in members - declared.keys() if not _APART.search(name)]
     if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS:
         return
-    if missing[0] in view.spread({package.name, *declared}):
+    if missing[0] in view.transitive_dependencies({package.name, *declared}):
         return
     tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
     yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})

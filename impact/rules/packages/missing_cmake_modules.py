@@ -61,7 +61,7 @@ def _lacks_eigen(view: TargetView, package) -> bool:
     found = {f.name for f in package.build.found} - {"Eigen"}
     if any("$" in name for name in found):
         return False
-    reached = view.spread({*found, *(p.name for name in found for p in view.cmake(name)[:1])})
+    reached = view.transitive_dependencies({*found, *(p.name for name in found for p in view.cmake(name)[:1])})
     return any(
         need.how == "include" and need.subject.startswith(("Eigen/", "unsupported/Eigen/"))
         and need.role == "build" and need.certain and not view.answered(need.providers, reached)

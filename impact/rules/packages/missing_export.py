@@ -116,7 +116,7 @@ def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name:
 
 def _comes_with_client_library(view: TargetView, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
-    return name in view.spread(("rclcpp" if view.target.ros == 2 else "roscpp",))
+    return name in view.transitive_dependencies(("rclcpp" if view.target.ros == 2 else "roscpp",))
 
 
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:

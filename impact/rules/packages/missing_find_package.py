@@ -66,12 +66,16 @@ def missing_find_package(view: TargetView, package: Package):
     found = list_found_names(view, package)
     if found is None:
         return
-    reachable = view.spread(found) | view.roles.found_with(found)
+    reachable = view.transitive_dependencies(found) | view.roles.found_with(found)
     tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
     outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
-    built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
+    built = (
+        view.transitive_dependencies(n for n in found if n in outside or n not in tested)
+        if tested - outside
+        else reachable
+    )
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
-    closure = view.closure(package)
+    closure = view.build_environment(package)
     # ament_auto and ament_lint_auto find all that is declared for tests.
     finds_tested = any(f.how in ("ament_auto", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.declared(package), *found}), {f.prefix for f in package.build.found}
@@ -158,7 +162,7 @@ def _only_placed(view: TargetView, package):
         use = next((i for i in package.digest.includes if i.path.startswith(root) and i.targets), None)
         if use is None or not view.certain(use.conditions):
             continue
-        others = view.spread(name for name in found if name != vendor)
+        others = view.transitive_dependencies(name for name in found if name != vendor)
         if vendor in others or library in others:
             continue  # it may come along with those
         data = {"header": use.path, "vendor": vendor, "version": version}

@@ -39,9 +39,11 @@ def missing_message_generation(view: TargetView, package: Package):
         return
     # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
     generators = {*view.roles.exports("message_generation")} - {"genmsg"}
-    if found & generators or generators & view.spread(found & {"genmsg"}):
+    if found & generators or generators & view.transitive_dependencies(found & {"genmsg"}):
         return
-    through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
+    through = next(
+        (f for f in sorted(found) if {"message_generation", "genmsg"} & view.transitive_dependencies([f])), ""
+    )
     doubts = (
         (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.unknown_contents.may_come_along(package) else ()
     )

@@ -35,7 +35,7 @@ def undeclared_by_script(view: TargetView, package: Package):
         return
     declared = view.declared(package)
     # Who finds the package builds with the same tool.
-    closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
+    closure = view.transitive_dependencies(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
     reported = {package.name}
     for found in package.build.handed_on:
         if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:

@@ -23,7 +23,7 @@ class Undeclared(NamedTuple):
 @kept_with
 def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
-    closure, declared = view.closure(package), view.declared(package)
+    closure, declared = view.build_environment(package), view.declared(package)
     found = Undeclared({}, {})
     elsewhere = {d.name for d in package.manifest.dependencies if not view.available(d.name)}  # for other distros
     for need in view.needs(package):

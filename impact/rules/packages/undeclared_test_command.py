@@ -45,7 +45,9 @@ def undeclared_test_command(view: TargetView, package: Package):
         if name in (None, package.name, *reported) or not view.active(use.conditions) or not view.available(name):
             continue
         reported.add(name)
-        if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
+        if name in view.build_environment(package) or name in view.transitive_dependencies(
+            f.name for f in package.build.found
+        ):
             continue
         path = package.digest.manifest_path
         yield Diagnostic(

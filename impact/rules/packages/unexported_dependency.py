@@ -66,7 +66,11 @@ def _list_linked(view: TargetView, package: Package):
         item = next((i for i in linked if view.debian(name) & {f"lib{i}-dev", f"{i}-dev"}), None)
         if item is None:
             continue
-        exported = exported if exported is not None else view.spread(n for n, k in declared.items() if k & FOR_RUN)
+        exported = (
+            exported
+            if exported is not None
+            else view.transitive_dependencies(n for n, k in declared.items() if k & FOR_RUN)
+        )
         if name in exported:
             continue
         data = {"library": item, "tag": _tag(package)}

@@ -73,7 +73,7 @@ def unfound_command(view: TargetView, package: Package):
             continue
         if owners == ["genmsg"] and build.generated:
             continue  # missing-message-generation reports it
-        if use.name in find_test_commands(view) and view.closure(package).isdisjoint(owners):
+        if use.name in find_test_commands(view) and view.build_environment(package).isdisjoint(owners):
             continue
         owner = _name_to_find(view, package, owners)
         if owner not in seen:
@@ -87,12 +87,12 @@ def unfound_command(view: TargetView, package: Package):
 @kept_with
 def _list_reached(view: TargetView, package: Package, names: frozenset[str]) -> frozenset[str]:
     """What finding packages may bring."""
-    return view.widest_spread(names) | view.roles.found_with(names) | {package.name}
+    return view.widest_dependencies(names) | view.roles.found_with(names) | {package.name}
 
 
 def _name_to_find(view: TargetView, package: Package, owners: list[str]) -> str:
     """The package that one would look for: an owner, or what is declared and brings it (ament_cmake)."""
     declared = list(view.declared(package))
-    near = [name for name in declared if not view.spread([name]).isdisjoint(owners)]
+    near = [name for name in declared if not view.transitive_dependencies([name]).isdisjoint(owners)]
     near.sort(key=lambda name: (name not in owners, name != package.build_type))
     return near[0] if near else owners[0]

@@ -66,7 +66,9 @@ def ungiven_package(view: TargetView, package: Package):
         owners = {p.name for p in providers}
         if not owners.isdisjoint(("", package.name)) or (
             (system := tuple(p for p in providers if p.kind != "ros"))
-            and (view.unknown_contents.may_come_along(package) or view.answered(system, view.closure(package)))
+            and (
+                view.unknown_contents.may_come_along(package) or view.answered(system, view.build_environment(package))
+            )
         ):
             continue  # the compiler finds it by itself
         names = owners & found  # of several possible owners, the one that CMake finds
@@ -93,7 +95,9 @@ def ungiven_package(view: TargetView, package: Package):
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)
                 reach[target] = (
-                    None if items is None else (view.spread(s for n in given if n for s in (n, n.lower())), hiding)
+                    None
+                    if items is None
+                    else (view.transitive_dependencies(s for n in given if n for s in (n, n.lower())), hiding)
                 )
             brought = reach[target]
             if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
@@ -132,7 +136,7 @@ def _list_off_path(
                 continue
             given = {package_of(item) for item in items}
             known = {n: {p.name for p in view.cmake(n)[:1]} for n in given if "/" not in n and n not in package.folders}
-            brought = view.spread({key for n, keys in known.items() for key in (n, *keys)})
+            brought = view.transitive_dependencies({key for n, keys in known.items() for key in (n, *keys)})
             alike = any(name.lower()[:3] in item.lower() for item in items)
             if alike or not all(known.values()) or view.answered(bringing, brought):
                 continue

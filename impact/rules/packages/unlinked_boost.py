@@ -157,7 +157,7 @@ def _find_linked_components(
         packages |= {f.name for f in package.build.found if f.how == "catkin"}
     if any(found.name in _BRING_BOOST for found in package.build.found):
         return None
-    brought = view.spread(packages - set(targets))
+    brought = view.transitive_dependencies(packages - set(targets))
     if view.target.ros == 1 and "roscpp" in brought:
         components |= BOOST_OF_ROSCPP
     components |= {c for c in BOOST_COMPILED if f"libboost-{c.replace('_', '-')}-dev" in brought}
@@ -184,7 +184,7 @@ def _lacks_boost(view: TargetView, package: Package, target: BuildTarget, compon
     if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
         return False
     exported = CatkinExports(view)
-    brought = exported.closure(linked_packages(view, package, linked))
+    brought = exported.transitive_dependencies(linked_packages(view, package, linked))
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
     )

@@ -103,9 +103,9 @@ def _is_brought(view: TargetView, package: Package, target: str, header: str, wo
         return True
     packages = linked_packages(view, package, items)
     if view.target.ros == 2:
-        return view.answered(view.header(header), view.spread(packages))
+        return view.answered(view.header(header), view.transitive_dependencies(packages))
     exported = CatkinExports(view)
-    brought = exported.closure(packages)
+    brought = exported.transitive_dependencies(packages)
     return brought is None or any(exported.may_bring(name, word) for name in brought)
 
 

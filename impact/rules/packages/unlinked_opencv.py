@@ -55,7 +55,7 @@ def unlinked_opencv(view: TargetView, package: Package):
         if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
             continue
         call = next((use for use in calls if use.at.path in target.sources), None)
-        brought = exported.closure(linked_packages(view, package, linked)) if call is not None else None
+        brought = exported.transitive_dependencies(linked_packages(view, package, linked)) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}

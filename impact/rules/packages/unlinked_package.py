@@ -107,7 +107,7 @@ def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
         linked = list_linked(package, target.name)
         if linked is None:
             continue
-        brought = exported.closure(linked_packages(view, package, linked))
+        brought = exported.transitive_dependencies(linked_packages(view, package, linked))
         if brought is None:
             continue
         words = [plain(item) for item in linked]

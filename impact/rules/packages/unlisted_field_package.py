@@ -81,7 +81,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                         at, data = _place_of(interface, field), {"owner": owner, "name": name}
                         yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type")
                     continue
-                if owner in view.spread(given):
+                if owner in view.transitive_dependencies(given):
                     continue
                 seen.add(owner)
                 rosidl = generated[0].how == "rosidl"

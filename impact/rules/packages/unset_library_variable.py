@@ -67,7 +67,7 @@ def _list_unset(view: TargetView, package):
     if build.unresolved or any("$" in f.name for f in build.found):
         return
     sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
-    reachable = {fold(name) for name in view.spread(f.name for f in build.found)}
+    reachable = {fold(name) for name in view.transitive_dependencies(f.name for f in build.found)}
     qt = {f.name for f in build.found if f.name.startswith("Qt")}
     seen = set()
     for use in build.uses:

@@ -471,7 +471,7 @@ class DistroTarget:
         here = Environment(self.distro, str(self.ros), (self.python_major, 0))
         return bool(condition) and evaluate(condition, here) is True
 
-    def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
+    def transitive_dependencies(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
         """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
 
         The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
