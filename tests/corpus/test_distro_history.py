@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from rosimpact.databuild.write import SCHEMA
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.snapshot import FACT_SCHEMA, SCHEMA
+from rosimpact.impact.targets.snapshot import FACT_SCHEMA
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "notebooks"))
 from distro_history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags

@@ -11,8 +11,9 @@ from rosimpact.impact.facts.surface import Entity, offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type
-from rosimpact.impact.targets.surface.changes import unpack
+from rosimpact.impact.targets.surface.changes import Line
 from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
+from rosimpact.impact.targets.unpacked import read_packed
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.
 ARM = (
@@ -79,7 +80,7 @@ def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None)
     packed = lines.packed()
     histories = {package: Declared(codes) for package, codes in packages.items()}
     return Changes(
-        lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {},
+        lambda package: {2: read_packed(packed[package, 2], Line)} if (package, 2) in packed else {},
         asked,
         lambda package, ros: histories.get(package),
     )
