@@ -25,7 +25,7 @@ def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Wo
     """ament_target_dependencies()."""
     items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
     draft = known(run, args[0])
-    note_signature(run, draft, args)
+    note_signature(run, draft, [args[0], *items])
     add_links(run, draft, items, "ament")
 
 

@@ -81,6 +81,9 @@ def _targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     export = ""
     includes: list[str] = []
     for item in args:
+        if item == "TARGETS":  # written again, it begins the same list
+            in_names = True
+            continue
         if in_names and item not in _KEYWORDS and item not in _ARTIFACTS:
             names.append(item)
             continue

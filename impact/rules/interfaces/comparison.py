@@ -1,6 +1,6 @@
 """Definitions before and after a change, and the packages that use them, for the rules of this family."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -34,9 +34,9 @@ def pairs(workspace: Workspace, base: Workspace) -> Iterator[SectionPair]:
         before = base.packages.get(package.name)
         if before is None:
             continue
-        old_files = {(i.name, i.definition.kind): i for i in before.digest.interfaces}
+        paths = {file.path for file in package.digest.interfaces}
         for file in package.digest.interfaces:
-            old = old_files.get((file.name, file.definition.kind))
+            old = _find_old(before, file, paths)
             if old is None or old.definition == file.definition:
                 continue
             sections = {s.name: s for s in old.definition.sections}
@@ -46,6 +46,15 @@ def pairs(workspace: Workspace, base: Workspace) -> Iterator[SectionPair]:
                         f" ({section.name})" if len(file.definition.sections) > 1 else ""
                     )
                     yield SectionPair(package, label, sections[section.name], section, file)
+
+
+def _find_old(before: Package, file: InterfaceFile, paths: Container[str]) -> InterfaceFile | None:
+    """The file at the base that a definition was: the one at its place, else one of its name and kind whose place no
+    file has any more. A package for both generations has two of a name (msg/X.msg and msg/ros2/X.msg). paths: of the
+    package's definitions now."""
+    alike = [i for i in before.digest.interfaces if (i.name, i.definition.kind) == (file.name, file.definition.kind)]
+    here = next((one for one in alike if one.path == file.path), None)
+    return here or next((one for one in alike if one.path not in paths), None)
 
 
 def type_of(field: Field) -> str:

@@ -95,11 +95,14 @@ def _list_libraries(view: TargetView, package: Package) -> Iterator[Diagnostic]:
 
 
 def _may_install_any(view: TargetView, meant: str, name: str) -> bool:
-    """Whether a released package, of which it is not known what it installs, may give a configuration this name: one
-    of plain CMake, or built by what is not known (protobuf_comm installs `ProtobufComm`); of ament, a name with other
-    separators (kuka_external_control_sdk installs `kuka-external-control-sdk`)."""
-    if meant in view.workspace.packages or view.target.version(meant) is None or view.providers.cmake(meant):
+    """Whether a package of which it is not known what it installs may give a configuration this name: one that the
+    target is not known to have (openarm_can installs `OpenArmCAN`); of the released ones, one of plain CMake, or built
+    by what is not known (protobuf_comm installs `ProtobufComm`); of ament, a name with other separators
+    (kuka_external_control_sdk installs `kuka-external-control-sdk`)."""
+    if meant in view.workspace.packages or view.providers.cmake(meant):
         return False
+    if view.target.version(meant) is None:
+        return True
     if view.target.build_type(meant) in ("cmake", ""):
         return True
     return view.offers.package(meant) is None and folded(meant) == folded(name)
