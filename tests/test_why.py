@@ -62,6 +62,12 @@ def test_uses_and_whether_they_are_safe():
     assert any("porter_bringup" in answer.undeclared for answer in undeclared)
 
 
+def test_a_package_is_not_safe_whose_change_breaks_a_use():
+    (answer, *_) = answers("message_filters", EXAMPLE, ("rolling",))
+    places = {line.split(": ")[0] for line in answer.findings if "[changed-signature]" in line}
+    assert places == {"src/porter_vision/src/marker_node.cpp:35", "src/porter_vision/src/marker_node.cpp:36"}
+
+
 def answer(what: str, *offers: NameOffer, used=(), undeclared=(), changes=(), findings=()) -> WhyAnswer:
     return WhyAnswer("jazzy", what, offers, used, undeclared, changes, findings)
 

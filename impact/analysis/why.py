@@ -123,10 +123,16 @@ def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[W
     here = tuple(
         f"{each.path}:{each.line}: {each.severity}: {each.message} [{each.rule}]"
         for each in findings
-        if (f"{each.path}:{each.line}" in used or name == each.subject or f"`{name}`" in each.message)
+        if (f"{each.path}:{each.line}" in used or _is_about(each, name))
         and (not each.targets or target in each.targets)
     )
     return [WhyAnswer(target, what, offers, used, undeclared, changes[:8], here) for what, offers in found]
+
+
+def _is_about(finding: Finding, name: str) -> bool:
+    """True for a finding about a name, or that is based on a change in the package of that name."""
+    changed = finding.evidence.package if finding.evidence is not None else ""
+    return name in (finding.subject, changed) or f"`{name}`" in finding.message
 
 
 def _offer(view: TargetView, name: str, package: str) -> NameOffer:
