@@ -1171,6 +1171,9 @@ class Interpreter:
         """Notes the name of the project where it is not that of the package, which ament_package_xml() of
         ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""
         held = self.get("PROJECT_NAME")
+        folder = posixpath.dirname(self.place(held.words[0].at).path) if held is not None and held.words else ""
+        if folder != self.package_path and self.exists(posixpath.join(folder, "package.xml")):
+            return  # a package below this one, which has a manifest of its own
         if held is not None and held.sure and held.text != self.package:
             self.refuse("project", held.words[0])
         self.set_unknown(f"{self.project}_VERSION", self.here())
