@@ -31,7 +31,10 @@ def list_undefined(
             continue  # settings of tools, which define names for them
         for use in facts.unbound:
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
+        around = modules.list_around(path) if "." in posixpath.basename(_stem_of(path)) else frozenset()
         for item in facts.imports:
+            if not item.level and item.module.partition(".")[0] in around:
+                continue  # a launch file is no module, so that the folder above its own is not searched
             meant = modules.absolute(path, item) if item.level else item.module
             program = path if facts.interpreter else ""
             if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
@@ -246,6 +249,10 @@ class _Modules:
             return False
         there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
         return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
+
+    def list_around(self, path: str) -> frozenset[str]:
+        """The names of the outermost Python packages that a file lies in."""
+        return frozenset(name for name, roots in self._roots.items() if any(path.startswith(f"{r}/") for r in roots))
 
     def _meant(self, module: str) -> set[str]:
         """The paths, without endings, that a module has below folders which its first name may be."""
