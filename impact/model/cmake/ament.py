@@ -26,7 +26,7 @@ def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Wo
     items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
     draft = known(run, args[0])
     # What has neither libraries nor targets (Eigen3) is not linked; packages of ROS are taken to have some.
-    declared = {*run.declared.build, *run.declared.test, *run.declared.exported}
+    declared = run.declared.names
     if any(item in declared or "$" in item for item in items):
         note_signature(run, draft, [args[0], *items])
     add_links(run, draft, items, "ament")

@@ -264,6 +264,11 @@ class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
     exported: tuple[str, ...] = ()
     conditions: Mapping[str, Condition] = {}
 
+    @property
+    def names(self) -> frozenset[str]:
+        """All of them, whatever they are declared for."""
+        return frozenset((*self.build, *self.test, *self.exported))
+
     def under(self, name: str, conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
         """The conditions, and that of a declared package."""
         own = self.conditions.get(name)

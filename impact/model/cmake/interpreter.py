@@ -458,7 +458,7 @@ class Interpreter:
         """A test of this package that is not decided."""
         asked = packages_asked(text) if "_FOUND" in text else ()
         self.asked.update(dict.fromkeys(asked))
-        known = {*self.declared.build, *self.declared.test, *self.declared.exported} if asked else ()
+        known = self.declared.names if asked else ()
         declared = tuple(name for name in asked if name in known)
         return Condition("cmake", text, negated, declared)
 
@@ -1171,11 +1171,11 @@ class Interpreter:
         """Notes the name of the project where it is not that of the package, which ament_package_xml() of
         ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""
         held = self.get("PROJECT_NAME")
-        folder = posixpath.dirname(self.place(held.words[0].at).path) if held is not None and held.words else ""
-        if folder != self.package_path and self.exists(posixpath.join(folder, "package.xml")):
-            return  # a package below this one, which has a manifest of its own
         if held is not None and held.sure and held.text != self.package:
-            self.refuse("project", held.words[0])
+            folder = posixpath.dirname(self.place(held.words[0].at).path)
+            # A package below this one has a manifest of its own.
+            if folder == self.package_path or not self.exists(posixpath.join(folder, "package.xml")):
+                self.refuse("project", held.words[0])
         self.set_unknown(f"{self.project}_VERSION", self.here())
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
