@@ -20,6 +20,7 @@ _USUALLY_SET = re.compile(
     r"LIBRARY_PATH|CPATH|PKG_CONFIG_PATH|CI|(?:CMAKE|CTEST|ROS|RMW|AMENT|COLCON|CATKIN|RCUTILS|CCACHE|DEB|DPKG)_\w+|"
     r"ProgramFiles\S*|\w*_PREFIX_PATH|\w*(?:VERBOSE|JOBS))\Z"
 )
+_DISTRO_FOLDER = re.compile(r"/opt/ros/([a-z]+)(/.*)?\Z")
 _REFERENCE = re.compile(r"\$(ENV)?\{([^{}$]*)\}")
 NUMBER = re.compile(r"\s*[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?\s*\Z")
 _MAX_DEPTH = 60
@@ -193,7 +194,19 @@ class _OnMachine(CMakeTest):
                 return False
         if kind == "COMMAND" and self.environment.gone("command", argument):
             return False
+        if kind in ("EXISTS", "IS_DIRECTORY"):
+            return self.exists(self.expand(argument) or "")
         return None
+
+    def exists(self, path: str) -> bool | None:
+        """Whether the folder of a distro is there: a machine has the one that it is built for. Source: REP 142, the
+        setup files of binary packages."""
+        folder = _DISTRO_FOLDER.match(path)
+        if folder is None or not self.environment.ros_distro:
+            return None
+        if folder.group(1) != self.environment.ros_distro:
+            return False
+        return True if folder.group(2) in (None, "/", "/setup.sh", "/setup.bash") else None
 
     def expand(self, text: str) -> str | None:
         """References replaced; None when one is not known."""

@@ -32,7 +32,7 @@ from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import ChangeInForce, Provider
 from ..targets.version import at_least
-from .cmake.build import At, FoundPackage, for_tests
+from .cmake.build import At, FoundPackage, for_tests, select_active
 from .cmake.names import MODULES, SINCE
 from .misspelling import SpellingIndex
 from .package import role_of_folder
@@ -136,8 +136,14 @@ class TargetView:
         return self.part is None or name in self.part
 
     def everyone(self) -> Iterator[Package]:
-        """All packages of the workspace that are built on this target."""
-        return filter(self.builds, self.workspace)
+        """All packages of the workspace that are built on this target, as they are built there."""
+        return map(self._select_active, filter(self.builds, self.workspace))
+
+    @cached_method
+    def _select_active(self, package: Package) -> Package:
+        """A package without what its CMake surely does not do on this target."""
+        build = select_active(package.build, self.active)
+        return package if build is package.build else Package(package.digest, build)
 
     def builds(self, package: Package) -> bool:
         """False for a package that is built with the tools of the other generation of ROS."""

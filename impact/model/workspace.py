@@ -49,8 +49,9 @@ class Package:
     """A package of the workspace: its digest, with indices made when first asked for.
 
     digest: all that was read of its files. path: its folder, relative to the workspace and empty for the workspace
-    itself. manifest: what package.xml says. build: what CMakeLists.txt builds, installs and exports. build_type:
-    `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the generation of the workspace.
+    itself. manifest: what package.xml says. build: what CMakeLists.txt builds, installs and exports, on all machines or
+    on the one that it is seen from. build_type: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the
+    generation of the workspace.
     """
 
     digest: LinkedPackage
@@ -60,10 +61,10 @@ class Package:
     build: Build
     build_type: str
 
-    def __init__(self, digest: LinkedPackage):
+    def __init__(self, digest: LinkedPackage, build: Build | None = None):
         self.digest = digest
         self.name, self.path = digest.name, digest.path
-        self.manifest, self.build, self.build_type = digest.manifest, digest.build, digest.build_type
+        self.manifest, self.build, self.build_type = digest.manifest, build or digest.build, digest.build_type
 
     def __repr__(self) -> str:
         return f"Package({self.name})"

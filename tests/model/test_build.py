@@ -500,6 +500,18 @@ def test_generated(source, expected):
     assert (made.how, made.target, made.files, [name for name, _ in made.dependencies]) == expected
 
 
+def test_each_generator_of_a_package_for_both_generations_has_its_own_files():
+    source = """project(p)
+if($ENV{ROS_VERSION} EQUAL 2)
+  rosidl_generate_interfaces(p msg/ros2/A.msg DEPENDENCIES builtin_interfaces)
+else()
+  add_message_files(FILES A.msg)
+  generate_messages(DEPENDENCIES std_msgs)
+endif()"""
+    files = {made.how: made.files for made in build(source).generated}
+    assert files == {"rosidl": ("pkg/msg/ros2/A.msg",), "catkin": ("pkg/msg/A.msg",)}
+
+
 USES = [
     ("ament_add_gtest(x a.cpp)", ["command ament_add_gtest"]),
     ("macro(mine)\nendmacro()\nmine()", []),

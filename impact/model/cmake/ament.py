@@ -108,7 +108,6 @@ def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[W
         text = posixpath.join(base, rest) if separator else str(item)
         path = run.tree_path(word(text, item.at))
         files.append(path)
-        run.message_files[(path, run.place(item.at))] = None
     wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
     run.generated.append(
         GeneratedInterfaces(

@@ -1,6 +1,6 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import msgspec
 
@@ -253,6 +253,21 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
+
+
+_CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused")
+
+
+def select_active(build: Build, active: Callable[[tuple[Condition, ...]], bool]) -> Build:
+    """What of a build counts on one machine: what surely does not is left out. active: whether a statement under these
+    conditions may count there."""
+    changed = {}
+    for field in _CONDITIONAL:
+        items = getattr(build, field)
+        kept = tuple(item for item in items if active(item.conditions))
+        if len(kept) != len(items):
+            changed[field] = kept
+    return msgspec.structs.replace(build, **changed) if changed else build
 
 
 class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):

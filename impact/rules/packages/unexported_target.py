@@ -48,7 +48,7 @@ def unexported_target(view: TargetView) -> Iterator[Diagnostic]:
             for link in target.links:
                 head, separator, name = link.item.partition("::")
                 owner = view.workspace.packages.get(head) if separator and link.how == "link" else None
-                if owner is None or owner is package or link.item in own or (owner.name, name) in seen:
+                if owner is None or owner.name == package.name or link.item in own or (owner.name, name) in seen:
                     continue
                 exported = _list_names(view, owner)
                 if exported is None or name in exported or "$" in name or package.build.unresolved:
