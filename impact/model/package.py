@@ -421,6 +421,7 @@ class PackageJoin:
     ):  # fmt: skip
         self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
         self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
+        self.generation = 2 if build_type.startswith("ament") else 1 if build_type == "catkin" else 0
         self.kinds, self.facts, self.look = gathered.kinds, gathered.facts, gathered.look
         self.watched, self.home, self.asked, self.changing = watched, home, asked, changing
         self.read = cache(read)  # a file is looked into for several reasons
@@ -487,6 +488,8 @@ class PackageJoin:
                 if any(item.module.split(".")[0] == "launch_ros" for item in facts.imports):
                     launches.append((path, "launch_python"))
                     data_words.append(facts.words)
+                    if self.generation == 1:
+                        unused.add(path)
             elif isinstance(facts, Interface):
                 name = facts.name or posixpath.basename(path).rsplit(".", 1)[0]
                 interfaces.append(InterfaceFile(name, path, facts))
@@ -500,8 +503,8 @@ class PackageJoin:
                     parameters.append(path)
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
-                    if getattr(facts, "generation", 0) == 1 and self.build_type.startswith("ament"):
-                        unused.add(path)  # left over: the launch system of ROS 2 refuses it
+                if {getattr(facts, "generation", 0), self.generation} == {1, 2}:
+                    unused.add(path)  # left over, or for the other build of a package for both generations
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         if self.build_type == "catkin":  # which starts programs from the source space too
@@ -536,7 +539,7 @@ class PackageJoin:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), self.role(p) or ("aside" if p in unused else "run"))
+                ReferenceUse(r, At(p, r.line, r.column), "aside" if p in unused else self.role(p) or "run")
                 for p, r in references
             ),
             names=tuple(names + python_names),
@@ -916,7 +919,7 @@ class PackageJoin:
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
-        ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
+        ros = self.generation
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.looked_for(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}

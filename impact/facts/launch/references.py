@@ -32,7 +32,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
     and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
-    generation: of a launch file, as LaunchFile has it.
+    generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
     """
 
     references: tuple[Reference, ...]
@@ -435,6 +435,7 @@ def _shell(data: bytes) -> ReferenceFile:
     heredoc = ""
     depth = 0
     offset = 0
+    generations: set[int] = set()
     for line in text.split("\n"):
         start, offset = offset, offset + len(line) + 1
         stripped = line.strip()
@@ -450,12 +451,13 @@ def _shell(data: bytes) -> ReferenceFile:
         if re.match(r"(?:if|case)\b", stripped):
             depth += 1
         for m in SHELL.finditer(line):
+            generations.add(2 if m["command"].startswith("ros2") else 1)
             _shell_command(found, m, start, depth > 0)
         for m in re.finditer(r"package://[^\s\"']+", line):
             found.mentions(m.group(), start + m.start(), depth > 0)
         if re.search(r"(?:^|;)\s*(?:fi|esac)\b", stripped):
             depth = max(depth - 1, 0)
-    return found.file()
+    return msgspec.structs.replace(found.file(), generation=generations.pop() if len(generations) == 1 else 0)
 
 
 def _shell_command(found: _Found, match: re.Match[str], start: int, conditional: bool) -> None:
