@@ -27,6 +27,7 @@ from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import HeadersOfMachine, machine, machine_of
 from ..targets.providers.libraries import system_libraries
 from ..targets.providers.library import default_standard, include_roots, standard_year
+from ..targets.providers.providers import Providers
 from ..targets.providers.stdlib import ever_stdlib, stdlib
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
@@ -104,7 +105,7 @@ class TargetView:
         self,
         workspace: Workspace,
         target: DistroTarget,
-        providers,
+        providers: Providers,
         config: Config = _UNCONFIGURED,
         asked: frozenset[str] = frozenset(),
     ):

@@ -27,9 +27,10 @@ from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
+from ..facts.store import Store
 from ..source_keys import source_key
 from ..targets.surface.fields import snake
-from ..tree.paths import is_vendored
+from ..tree.paths import Tree, is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
@@ -424,9 +425,9 @@ def _owners(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def link(
-    tree,
+    tree: Tree,
     gathered: ExtractedFacts,
-    store,
+    store: Store | None,
     ros: int | None,
     watched: Watched,
     jobs: int | None = None,
@@ -499,7 +500,7 @@ def _called(build: Build, declared: str) -> str:
 class _Linker:
     def __init__(
         self,
-        tree,
+        tree: Tree,
         gathered: ExtractedFacts,
         discovered: Discovered,
         ros: int,
@@ -522,7 +523,7 @@ class _Linker:
         self.unread = frozenset(problem.path for problem in (*gathered.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
 
-    def digests(self, store) -> list[LinkedPackage]:
+    def digests(self, store: Store | None) -> list[LinkedPackage]:
         places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
         keys = {p.path: self.key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(LinkedPackage)

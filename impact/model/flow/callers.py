@@ -13,6 +13,7 @@ from .graph import Trigger
 
 if TYPE_CHECKING:
     from .code import Fn
+    from .join import Join
 
 _DEEPEST = 8
 
@@ -83,7 +84,7 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
                 queue.extend((each, steps + 1) for each in fresh)
 
 
-def callers(join) -> Callers:
+def callers(join: Join) -> Callers:
     """The callers of all functions of a Join."""
     code, triggers = join.code, join.triggers
     above: dict[Fn, list[Fn]] = {}

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from ...facts.extract import ExtractedFacts
 from ...facts.kinds import FLOW, kind_of
 from ...source_keys import code_stamp
+from ...tree.paths import Tree
 from ..package import role_of_folder
 from ..workspace import Workspace
 
@@ -15,7 +16,7 @@ _READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "para
 _MANIFESTS = ("manifest", "manifest_variant")
 
 
-def code_kinds(tree) -> Callable[[str], str | None]:
+def code_kinds(tree: Tree) -> Callable[[str], str | None]:
     """The kind of flow facts wanted of a path of a tree; None for what is no code, tests, and what no package owns.
 
     Which folders are packages is not known before files are read: a file is left out when it would be a test of
