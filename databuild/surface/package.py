@@ -21,6 +21,7 @@ from ...impact.facts.store import encodable
 from ...impact.model.package import role_of_folder
 from ...impact.source_keys import source_key
 from ...impact.targets.surface.surface import BuildSurface, Surface
+from ..extract import cpp, python
 from . import build as surface_build
 from . import python as surface_python
 from .headers import compiled
@@ -53,10 +54,10 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
         headers[package.name] = found
         if not sure:
             guessed.add(package.name)
-        wanted.update((path, "surface_cpp") for path in found.values())
+        wanted.update((path, cpp.__name__) for path in found.values())
         for path in surface_python.installed(package).modules.values():
             if surface_python.kind_of(path) is not None:
-                wanted[path] = "surface_python"
+                wanted[path] = python.__name__
     declaring = {package.name: dict(_declaring(package)) for package in workspace}
     looked = gather(tree, store, jobs=jobs, kind_of=wanted.get)
     sources = {path: kind for each in declaring.values() for path, kind in each.items()}

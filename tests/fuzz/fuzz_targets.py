@@ -27,6 +27,7 @@ from rosimpact.corpus import robust
 from rosimpact.corpus.polite import ServiceAnswer
 from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
+from rosimpact.databuild.extract import cpp, python
 from rosimpact.databuild.surface import unpacked_deb
 from rosimpact.edges import console
 from rosimpact.edges.documents import DocumentError, load_json, load_toml, load_yaml
@@ -152,10 +153,10 @@ def _tables() -> dict[str, object]:
 
 def _raise_again(kind: str, data: bytes) -> None:
     """Runs an extractor without what catches its exceptions."""
-    module = kinds.EXTRACTORS[kind][0]
     if kind in kinds.SEARCHES:
         return  # its problem alone says what failed
-    read = import_module(f"rosimpact.impact.facts.{module}").extract
+    module = kinds.EXTRACTORS[kind][0] if kind in kinds.EXTRACTORS else ""
+    read = import_module(f"rosimpact.impact.facts.{module}" if module else kind).extract
     _ = read(data, kind) if module in kinds.WITH_KIND else read(data)
     if kind == "setup_py":
         _raise_again("python", data)
@@ -412,7 +413,7 @@ def deb(data: bytes) -> None:
         return
 
 
-_KINDS = sorted(kinds.EXTRACTORS)
+_KINDS = sorted((*kinds.EXTRACTORS, cpp.__name__, python.__name__))
 
 
 def rows(data: bytes) -> None:
@@ -606,7 +607,7 @@ def _deb_seeds() -> dict[str, bytes]:
 
 _SEED_FOLDERS = {
     "manifest": "manifest", "manifest_variant": "manifest", "cmake": "cmake", "msg": "interface", "srv": "interface",
-    "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", "surface_cpp": "cpp",
+    "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", cpp.__name__: "cpp",
     "parameters_cpp": "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
     "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", "parameters_yaml": "launch_yaml",
     "shell": "shell", "script": "shell", "flow_script": "shell", "setup_cfg": "cfg", "pyproject": "toml",
