@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from rosimpact.databuild.extract import cpp, python
+from rosimpact.databuild.extract import cpp, parameters, python
 from rosimpact.impact import source_keys
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.source_keys import keys_of, source_key
@@ -61,6 +61,7 @@ def sources():
     return {name: open(path, "rb").read() for name, path, _ in source_keys._sources()}
 
 
+PARAMETERS = set(map(parameters.kind_of, parameters.LIMITS))
 # A module of each extractor that no other extractor imports, and the kinds that it makes.
 EXTRACTORS = [
     ("impact.facts.interface", {"msg", "srv", "action", "idl"}),
@@ -69,8 +70,9 @@ EXTRACTORS = [
     ("impact.facts.launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
     ("databuild.extract.cpp_enums", {cpp.__name__}),
     ("databuild.extract.python", {python.__name__}),
+    ("databuild.extract.parameters", PARAMETERS),
 ]
-KINDS = (*kinds.EXTRACTORS, cpp.__name__, python.__name__)
+KINDS = (*kinds.EXTRACTORS, cpp.__name__, python.__name__, *PARAMETERS)
 
 
 @pytest.mark.parametrize(("module", "expected"), EXTRACTORS)

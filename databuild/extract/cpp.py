@@ -62,7 +62,7 @@ _HEADER_MACROS = ("DEPRECATED_HEADER", "HEADER_DEPRECATED")
 
 
 Facts = HeaderSurface
-LIMIT = "cpp"
+LIMITS = {"": "cpp"}
 """What facts/kinds.py asks a module that makes facts for: their type, and which limit the size of files has."""
 
 

@@ -23,7 +23,7 @@ _BEGIN = 4
 
 
 Facts = ModuleSurface
-LIMIT = "python"
+LIMITS = {"": "python"}
 """What facts/kinds.py asks a module that makes facts for: their type, and which limit the size of files has."""
 
 

@@ -43,7 +43,6 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("", "", ("script", "flow_script")),
     ("cpp.flow", "FlowFile", ("flow_cpp",)),
     ("python.flow", "FlowFile", ("flow_python",)),
-    ("parameters", "ParametersFile", ("parameters_cpp", "parameters_python", "parameters_cfg", "parameters_yaml")),
     ("launch.flow", "LaunchFile", ("flow_launch_xml", "flow_launch_yaml", "flow_launch_python")),
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
     ("colcon", "ColconFile",
@@ -56,9 +55,10 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
 EXTRACTORS = {kind: (module, struct) for module, struct, kinds in _READ_BY for kind in kinds}
 """kind: (module, struct). A kind is stored under the key of its module\'s code.
 
-A kind with a dot is the full name of a module of another room that makes facts. It needs no entry here: such a module
-has `extract`, `Facts` (its struct) and `LIMIT` (which of the limits its files have)."""
-WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "parameters", "setup"})
+A kind with a dot is the full name of a module of another room that makes facts, alone or with a variant:
+`rosimpact.room.module:variant`. It needs no entry here: such a module has `extract`, which is given the variant where
+there is one, `Facts`, its struct, and `LIMITS`, by variant the name of the limit that the size of its files has."""
+WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "setup"})
 SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
@@ -140,7 +140,7 @@ def largest(kind: str) -> int:
     """Bytes above which a file of a kind is taken for generated, or for an attack, and not read."""
     budget = limits()
     if "." in kind:
-        return getattr(budget, import_module(kind).LIMIT)
+        return getattr(budget, import_module(_module_of(kind)).LIMITS[kind.partition(":")[2]])
     module = EXTRACTORS[kind][0]
     if kind in _BUDGETS:
         return getattr(budget, _BUDGETS[kind])
@@ -151,7 +151,7 @@ def largest(kind: str) -> int:
 
 # Names of limits, where the extractor's name does not say it.
 _BUDGETS = {
-    **dict.fromkeys(("launch_yaml", "params", "parameters_yaml", "flow_launch_yaml", "flow_parameters"), "parameters"),
+    **dict.fromkeys(("launch_yaml", "params", "flow_launch_yaml", "flow_parameters"), "parameters"),
     "flow_launch_xml": "launch",
     **dict.fromkeys(("setup_cfg", "pyproject", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings"), "settings"),
     **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
@@ -176,7 +176,7 @@ def version_of_all() -> str:
 def _module_of(kind: str) -> str:
     """The full name of the module that makes a kind of facts, empty where others make it."""
     if "." in kind:
-        return kind
+        return kind.partition(":")[0]
     module = EXTRACTORS[kind][0]
     return module and f"{_ROOM}.{module}"
 
@@ -229,7 +229,9 @@ def _extractor(kind: str) -> Callable[..., Any]:
 
 def _extracted(kind: str, data: bytes) -> Any:
     read = _extractor(kind)
-    return read(data, kind) if kind in EXTRACTORS and EXTRACTORS[kind][0] in WITH_KIND else read(data)
+    of_kind = kind in EXTRACTORS and EXTRACTORS[kind][0] in WITH_KIND
+    variant = kind if of_kind else kind.partition(":")[2]
+    return read(data, variant) if variant else read(data)
 
 
 def _contained(kind: str, make: Callable[[], Any]) -> Any:

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from rosimpact.databuild.extract import cpp, python
+from rosimpact.databuild.extract import cpp, parameters, python
 from rosimpact.edges.limits import Limits, size_text
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.kinds import (
@@ -94,7 +94,7 @@ def test_first_line_tells_scripts_apart(data, kind):
     assert decode("script", encode(facts)) == facts
 
 
-KINDS = {*EXTRACTORS, cpp.__name__, python.__name__}
+KINDS = {*EXTRACTORS, cpp.__name__, python.__name__, *map(parameters.kind_of, parameters.LIMITS)}
 LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "parameters", "script", "settings")
 
 
@@ -106,6 +106,7 @@ LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "paramete
         ("flow_launch_python", "python"), ("launch_xml", "launch"), ("flow_launch_xml", "launch"),
         ("params", "parameters"), ("script", "script"), ("shell", "script"), ("pyproject", "settings"),
         (cpp.__name__, "cpp"), (python.__name__, "python"),
+        *((parameters.kind_of(language), limit) for language, limit in parameters.LIMITS.items()),
     ],
 )  # fmt: skip
 def test_each_kind_has_its_limit(kind, limit, monkeypatch):
