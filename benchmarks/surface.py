@@ -353,7 +353,7 @@ def _access(cursor) -> str:
 
 def read(path: str) -> tuple[list[Seen], set[int]]:
     """The same from our reader, and which of them (by place) stand under a condition or come from a macro."""
-    from rosimpact.impact.facts.cpp.surface import extract
+    from rosimpact.databuild.extract.cpp import extract
     from rosimpact.impact.facts.surface import FUNCTIONS
 
     found: list[Seen] = []
@@ -393,7 +393,7 @@ ALL_TRAITS = frozenset(("const", "static", "virtual", "pure", "explicit", "delet
 
 def bare(type_: str) -> str:
     """A type without the scopes that one side resolves and the other leaves as written."""
-    from rosimpact.impact.facts.cpp.surface_types import argument, tokens_of
+    from rosimpact.databuild.extract.cpp_types import argument, tokens_of
 
     if type_ is None:
         return ""
@@ -554,8 +554,8 @@ def headers(repository: str) -> Iterator[bytes]:
 
 def speed(repositories: list[str]) -> int:
     """Prints the CPU time of each repository's headers, and medians over all."""
+    from rosimpact.databuild.extract.cpp import extract
     from rosimpact.impact.facts.cpp.flow_grammar import LANGUAGE
-    from rosimpact.impact.facts.cpp.surface import extract
     from tree_sitter import Parser
 
     parser = Parser(LANGUAGE)

@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .. import impact
+from .. import edges, impact
 from ..edges.console import UserError
 from ..impact.tree import TreeError
 from .surface.clones import Clone
@@ -34,14 +34,14 @@ _LOST = 30
 
 @cache
 def code_digest() -> str:
-    """The same on every machine that has the same checker: names and contents of its files."""
-    root = Path(impact.__path__[0])
+    """The same on every machine that has the same checker and builder: names and contents of their files."""
     digest = hashlib.sha1()
-    for path in sorted(root.rglob("*")):
-        if path.suffix != ".pyc" and path.is_file():
-            data = path.read_bytes()
-            digest.update(f"{path.relative_to(root).as_posix()} {len(data)}\n".encode("utf-8", "surrogateescape"))
-            digest.update(data)
+    for root in (Path(impact.__path__[0]), Path(__file__).parent, Path(edges.__path__[0])):
+        for path in sorted(root.rglob("*")):
+            if path.suffix != ".pyc" and path.is_file():
+                data = path.read_bytes()
+                digest.update(f"{path.relative_to(root).as_posix()} {len(data)}\n".encode("utf-8", "surrogateescape"))
+                digest.update(data)
     return digest.hexdigest()
 
 

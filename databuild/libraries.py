@@ -26,10 +26,10 @@ import msgspec
 import zstandard
 
 from ..edges.files import write_file
-from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import HeaderSurface
 from ..impact.targets.snapshot import default
 from ..impact.targets.surface.surface import ExportedTarget
+from .extract import cpp
 from .providers import cmake_names, dependencies_of, include_paths, is_of_compiler, lines_of, of_ros, read_keys
 from .surface.headers import compiled
 from .surface.unpacked_deb import DebError, members_and_links
@@ -190,7 +190,7 @@ class Texts:
         sha = hashlib.sha1(data).hexdigest()
         if self._db.execute("SELECT 1 FROM text WHERE sha = ?", (sha,)).fetchone() is None:
             plain = _COMMENT.sub(" ", data.decode("utf-8", "replace"))
-            surface = compiled(surface_cpp.extract(data))
+            surface = compiled(cpp.extract(data))
             text = HeaderText(surface, tuple(sorted(set(_WORD.findall(plain)))), refusal(plain))
             self._db.execute("INSERT INTO text VALUES(?, ?)", (sha, self._pack.compress(_encode(text))))
         return sha

@@ -12,9 +12,9 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..impact.facts.cpp import surface as surface_cpp
 from ..impact.facts.surface import HeaderSurface
 from ..impact.targets.version import at_least, parts
+from .extract import cpp
 from .history import _tree
 from .includes import AV_HEADERS
 from .surface.releases import git_directory
@@ -103,7 +103,7 @@ def read(folder: Path, library: str, platforms: Collection[str], inner: re.Patte
                 if blob.id.raw not in known:
                     text = blob.data
                     words = frozenset(_WORD.findall(_COMMENT.sub(" ", text.decode("utf-8", "replace"))))
-                    known[blob.id.raw] = (HeaderSurface(()) if inner.search(path) else surface_cpp.extract(text), words)
+                    known[blob.id.raw] = (HeaderSurface(()) if inner.search(path) else cpp.extract(text), words)
     for number in sorted(versions, key=parts):
         found = versions[number]
         words = frozenset().union(*(known[blob][1] for blob in found.values()))

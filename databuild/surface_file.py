@@ -18,9 +18,9 @@ import zstandard
 
 from ..edges.files import read_chunks, writing
 from ..impact.facts.interface import Interface
-from ..impact.facts.parameters import last_part
 from ..impact.facts.python.surface import Bound
 from ..impact.facts.surface import Entity, HeaderSurface
+from ..impact.targets.parameters import last_part
 from ..impact.targets.surface.changes import PARAMETER, Line
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
 from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory

@@ -3,6 +3,7 @@
 import os
 
 import pytest
+from rosimpact.databuild.extract import cpp, parameters, python
 from rosimpact.impact import source_keys
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.source_keys import keys_of, source_key
@@ -60,28 +61,31 @@ def sources():
     return {name: open(path, "rb").read() for name, path, _ in source_keys._sources()}
 
 
+PARAMETERS = set(map(parameters.kind_of, parameters.LIMITS))
 # A module of each extractor that no other extractor imports, and the kinds that it makes.
 EXTRACTORS = [
-    ("interface", {"msg", "srv", "action", "idl"}),
-    ("manifest", {"manifest", "manifest_variant"}),
-    ("cmake", {"cmake"}),
-    ("launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
-    ("python.surface", {"surface_python"}),
+    ("impact.facts.interface", {"msg", "srv", "action", "idl"}),
+    ("impact.facts.manifest", {"manifest", "manifest_variant"}),
+    ("impact.facts.cmake", {"cmake"}),
+    ("impact.facts.launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
+    ("databuild.extract.cpp_enums", {cpp.__name__}),
+    ("databuild.extract.python", {python.__name__}),
+    ("databuild.extract.parameters", PARAMETERS),
 ]
+KINDS = (*kinds.EXTRACTORS, cpp.__name__, python.__name__, *PARAMETERS)
 
 
 @pytest.mark.parametrize(("module", "expected"), EXTRACTORS)
 def test_one_line_of_an_extractor_changes_its_key_alone(monkeypatch, module, expected):
     found = sources()
-    before = {kind: kinds.version_of(kind) for kind in kinds.EXTRACTORS}
-    name = f"impact.facts.{module}"
-    found[name] += b"_ADDED = 1\n"
+    before = {kind: kinds.version_of(kind) for kind in KINDS}
+    found[module] += b"_ADDED = 1\n"
     keys = keys_of(found, lambda library: "")
     unchanged = keys_of(sources(), lambda library: "")
     monkeypatch.setattr(source_keys, "_keys", lambda: keys)
-    after = {kind: kinds.version_of(kind) for kind in kinds.EXTRACTORS}
+    after = {kind: kinds.version_of(kind) for kind in KINDS}
     monkeypatch.setattr(source_keys, "_keys", lambda: unchanged)
-    again = {kind: kinds.version_of(kind) for kind in kinds.EXTRACTORS}
+    again = {kind: kinds.version_of(kind) for kind in KINDS}
     assert {kind for kind in after if after[kind] != again[kind]} == expected
     assert len(set(before.values())) == len(before)
 

@@ -11,12 +11,12 @@ import msgspec
 from ...edges.memory import cached_method
 from ...edges.reach import walk
 from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
-from ...impact.facts.parameters import mentions
 from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
 from ...impact.targets.surface.fields import ROS1_SUFFIXES, snake
 from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
+from ..extract.parameters import mentions
 from . import compare_build, compare_cpp, compare_python
 
 

@@ -17,10 +17,8 @@ from ...edges.files import read_file, read_start, too_large
 from ...edges.limits import limits
 from ...impact.facts import interface as interfaces
 from ...impact.facts import manifest as manifests
-from ...impact.facts.cpp import surface as surface_cpp
 from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.launch import flow as flow_launch
-from ...impact.facts.python import surface as surface_python
 from ...impact.facts.surface import HeaderSurface
 from ...impact.targets.surface.fields import ROS1_SUFFIXES
 from ...impact.targets.surface.surface import (
@@ -33,6 +31,7 @@ from ...impact.targets.surface.surface import (
     PythonSurface,
     Surface,
 )
+from ..extract import cpp, python
 from .build import launch_arguments, launch_kind
 from .clones import VersionError
 from .compare import RepositorySurfaces
@@ -197,7 +196,7 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
             listed.append(Header(include, path))
             continue
         listed.append(Header(include, path, path))
-        headers.append((include, compiled(surface_cpp.extract(data))))
+        headers.append((include, compiled(cpp.extract(data))))
     cmake = _cmake(package, mine)
     modules, unknown = _python(package, mine)
     declared = [d.name for d in manifest.dependencies if d.kind in ("exec", "build_export")]
@@ -339,7 +338,7 @@ def _python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule],
             elif inside.endswith(".py"):
                 init = inside.endswith("/__init__.py")
                 name = dotted.removesuffix(".__init__.py").removesuffix(".py")
-                modules[name] = InstalledModule(name, path, init, surface_python.extract(part.read(path)))
+                modules[name] = InstalledModule(name, path, init, python.extract(part.read(path)))
     return [modules[name] for name in sorted(modules)], unknown
 
 

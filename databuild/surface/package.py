@@ -16,11 +16,12 @@ import msgspec
 from ...edges.limits import limits_stamp
 from ...impact.facts import kinds
 from ...impact.facts.interface import Field, Interface, Section
-from ...impact.facts.parameters import last_part
 from ...impact.facts.store import encodable
 from ...impact.model.package import role_of_folder
 from ...impact.source_keys import source_key
+from ...impact.targets.parameters import last_part
 from ...impact.targets.surface.surface import BuildSurface, Surface
+from ..extract import cpp, parameters, python
 from . import build as surface_build
 from . import python as surface_python
 from .headers import compiled
@@ -53,10 +54,10 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
         headers[package.name] = found
         if not sure:
             guessed.add(package.name)
-        wanted.update((path, "surface_cpp") for path in found.values())
+        wanted.update((path, cpp.__name__) for path in found.values())
         for path in surface_python.installed(package).modules.values():
             if surface_python.kind_of(path) is not None:
-                wanted[path] = "surface_python"
+                wanted[path] = python.__name__
     declaring = {package.name: dict(_declaring(package)) for package in workspace}
     looked = gather(tree, store, jobs=jobs, kind_of=wanted.get)
     sources = {path: kind for each in declaring.values() for path, kind in each.items()}
@@ -95,11 +96,11 @@ def _declaring(package: Package) -> Iterator[tuple[str, str]]:
         full = path if path.startswith(base) else f"{base}{path}"
         kind = kinds.kind_of(full)
         if kind in ("cpp", "python") and role_of_folder(full[len(base) :]) is None:
-            yield full, f"parameters_{kind}"
+            yield full, parameters.kind_of(kind)
     for made in package.build.generated:
-        kind = {"parameters": "parameters_yaml", "reconfigure": "parameters_cfg"}.get(made.how)
-        if kind is not None and made.offered:
-            yield from ((path, kind) for path in made.files if "$" not in path)
+        language = {"parameters": "yaml", "reconfigure": "cfg"}.get(made.how)
+        if language is not None and made.offered:
+            yield from ((path, parameters.kind_of(language)) for path in made.files if "$" not in path)
 
 
 def _parameters(

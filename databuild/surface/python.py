@@ -15,6 +15,7 @@ from ...impact.facts.kinds import kind_of as kind_by_name
 from ...impact.facts.python.surface import ModuleSurface
 from ...impact.facts.setup import SetupFile
 from ...impact.targets.surface.surface import InstalledModule, PythonSurface
+from ..extract import python
 
 if TYPE_CHECKING:
     from ...impact.model.cmake.build import Install
@@ -31,7 +32,7 @@ class InstalledModules(NamedTuple):
 
 def kind_of(path: str) -> str | None:
     """The kind of facts that a Python surface wants of a path, besides those of the build: None for none."""
-    return "surface_python" if path.endswith(".py") and kind_by_name(path) == "python" else None
+    return python.__name__ if path.endswith(".py") and kind_by_name(path) == "python" else None
 
 
 def surface_of(package: Package, facts: Callable[[str], ModuleSurface | None]) -> PythonSurface:

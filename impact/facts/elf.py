@@ -50,7 +50,7 @@ class Elf(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     soname: its own, empty without one. needed: sonames that the loader looks for. search: its DT_RUNPATH, else its
     DT_RPATH, folder by folder. asked: versions of symbols by the library they are of. offers: versions that it defines
-    itself. undefined: symbols that it does not have. defined: how many others can use. build_id: hexadecimal.
+    itself. undefined: symbols that it does not have. defined: how many others can use.
     dynamic: it is linked at run time. problem: why what stands here is incomplete, empty when it is not.
     """
 
@@ -64,7 +64,6 @@ class Elf(msgspec.Struct, frozen=True, array_like=True, gc=False):
     offers: tuple[str, ...] = ()
     undefined: tuple[Undefined, ...] = ()
     defined: int = 0
-    build_id: str = ""
     dynamic: bool = False
     problem: str = ""
 
@@ -122,7 +121,7 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
     from elftools.elf.dynamic import DynamicSegment
     from elftools.elf.elffile import ELFFile
     from elftools.elf.gnuversions import GNUVerDefSection, GNUVerNeedSection, GNUVerSymSection
-    from elftools.elf.sections import NoteSection, SymbolTableSection
+    from elftools.elf.sections import SymbolTableSection
 
     file = ELFFile(_bounded(stream))
     found["machine"], found["bits"] = str(file["e_machine"]), file.elfclass
@@ -156,8 +155,6 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
             versions = section
         elif isinstance(section, SymbolTableSection) and section["sh_type"] == "SHT_DYNSYM":
             table = section
-        elif isinstance(section, NoteSection) and section.name == ".note.gnu.build-id":
-            found["build_id"] = next((str(note["n_desc"]) for note in section.iter_notes()), "")
     if table is not None:
         _symbols(stream, file, table, versions, names, found)
 

@@ -107,18 +107,13 @@ class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of a parameter or local variable, or of something below it. path: with its members (`msg.header.stamp`;
-    `[]` for an element: `msg.ranges.[]`). kind: `read`, `write`, `pass` (to: callee, position: argument number from 0)
-    or `escape` (handed to something that cannot be followed, whole or in part; to: what it is kept in, or the Function
-    that captures it, where one is known). keyword: name of the argument where it is passed by one."""
+    """How a parameter or local variable, or something below it, may be changed: reading it is not told. path: with its
+    members (`msg.header.stamp`; `[]` for an element: `msg.ranges.[]`). kind: `write`, `pass` (it is given to what is
+    called, or a method of it is called) or `escape` (handed to something that cannot be followed, whole or in part, or
+    captured by a Function inside)."""
 
     path: str
     kind: str
-    line: int
-    guard: int = -1
-    to: str = ""
-    position: int = -1
-    keyword: str = ""
 
 
 class FlowParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):

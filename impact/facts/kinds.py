@@ -43,9 +43,6 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("", "", ("script", "flow_script")),
     ("cpp.flow", "FlowFile", ("flow_cpp",)),
     ("python.flow", "FlowFile", ("flow_python",)),
-    ("cpp.surface", "HeaderSurface", ("surface_cpp",)),
-    ("python.surface", "ModuleSurface", ("surface_python",)),
-    ("parameters", "ParametersFile", ("parameters_cpp", "parameters_python", "parameters_cfg", "parameters_yaml")),
     ("launch.flow", "LaunchFile", ("flow_launch_xml", "flow_launch_yaml", "flow_launch_python")),
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
     ("colcon", "ColconFile",
@@ -56,8 +53,12 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("searches", "CalledCpp", ("called_cpp",)),
 )  # fmt: skip
 EXTRACTORS = {kind: (module, struct) for module, struct, kinds in _READ_BY for kind in kinds}
-"""kind: (module, struct). A kind is stored under the key of its module\'s code."""
-WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "parameters", "setup"})
+"""kind: (module, struct). A kind is stored under the key of its module\'s code.
+
+A kind with a dot is the full name of a module of another room that makes facts, alone or with a variant:
+`rosimpact.room.module:variant`. It needs no entry here: such a module has `extract`, which is given the variant where
+there is one, `Facts`, its struct, and `LIMITS`, by variant the name of the limit that the size of its files has."""
+WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "setup"})
 SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
@@ -138,6 +139,8 @@ def kind_of(path: str) -> str | None:
 def largest(kind: str) -> int:
     """Bytes above which a file of a kind is taken for generated, or for an attack, and not read."""
     budget = limits()
+    if "." in kind:
+        return getattr(budget, import_module(_module_of(kind)).LIMITS[kind.partition(":")[2]])
     module = EXTRACTORS[kind][0]
     if kind in _BUDGETS:
         return getattr(budget, _BUDGETS[kind])
@@ -148,7 +151,7 @@ def largest(kind: str) -> int:
 
 # Names of limits, where the extractor's name does not say it.
 _BUDGETS = {
-    **dict.fromkeys(("launch_yaml", "params", "parameters_yaml", "flow_launch_yaml", "flow_parameters"), "parameters"),
+    **dict.fromkeys(("launch_yaml", "params", "flow_launch_yaml", "flow_parameters"), "parameters"),
     "flow_launch_xml": "launch",
     **dict.fromkeys(("setup_cfg", "pyproject", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings"), "settings"),
     **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
@@ -161,13 +164,21 @@ _BUDGETS = {
 
 def version_of(kind: str) -> str:
     """The part of a store key that changes when the code of an extractor does, or what it may read at most."""
-    modules = {EXTRACTORS[each][0] for each in (kind, *_OTHERS_READ_TOO.get(kind, ())) if EXTRACTORS[each][0]}
-    return f"{kind}.{source_key(_HERE, *(f'{_ROOM}.{name}' for name in sorted(modules)))}{limits_stamp()}"
+    modules = {_module_of(each) for each in (kind, *_OTHERS_READ_TOO.get(kind, ()))} - {""}
+    return f"{kind}.{source_key(_HERE, *sorted(modules))}{limits_stamp()}"
 
 
 def version_of_all() -> str:
     """The same for all extractors together."""
-    return source_key(_HERE, *sorted({f"{_ROOM}.{module}" for module, _ in EXTRACTORS.values() if module}))
+    return source_key(_HERE, *sorted({_module_of(kind) for kind in EXTRACTORS} - {""}))
+
+
+def _module_of(kind: str) -> str:
+    """The full name of the module that makes a kind of facts, empty where others make it."""
+    if "." in kind:
+        return kind.partition(":")[0]
+    module = EXTRACTORS[kind][0]
+    return module and f"{_ROOM}.{module}"
 
 
 _HERE = __name__
@@ -213,13 +224,14 @@ def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
 
 
 def _extractor(kind: str) -> Callable[..., Any]:
-    module = EXTRACTORS[kind][0]
-    return getattr(import_module(f".{module}", __package__), kind if kind in SEARCHES else "extract")
+    return getattr(import_module(_module_of(kind)), kind if kind in SEARCHES else "extract")
 
 
 def _extracted(kind: str, data: bytes) -> Any:
     read = _extractor(kind)
-    return read(data, kind) if EXTRACTORS[kind][0] in WITH_KIND else read(data)
+    of_kind = kind in EXTRACTORS and EXTRACTORS[kind][0] in WITH_KIND
+    variant = kind if of_kind else kind.partition(":")[2]
+    return read(data, variant) if variant else read(data)
 
 
 def _contained(kind: str, make: Callable[[], Any]) -> Any:
@@ -270,8 +282,8 @@ def empty(kind: str, *problems: Problem) -> Any:
 
 @cache
 def _struct(kind: str) -> type[Any]:
-    module, struct = EXTRACTORS[kind]
-    return getattr(import_module(f".{module}", __package__), struct)
+    struct = EXTRACTORS[kind][1] if kind in EXTRACTORS else "Facts"
+    return getattr(import_module(_module_of(kind)), struct)
 
 
 _encoder = msgspec.msgpack.Encoder()

@@ -68,7 +68,7 @@ class Meaning:
         python = fn.source.facts.language == "python"
         if not made[0].type and not python:
             return None
-        if any(access.path == name and access.kind in ("write", "escape") for access in fn.facts.accesses):
+        if any(access.path == name and access.kind != "pass" for access in fn.facts.accesses):
             return None
         return self._written(made[0].value, fn, depth)
 

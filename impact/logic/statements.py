@@ -293,8 +293,7 @@ class _Digester:
     @cached_method
     def _changes(self, fn: Fn) -> frozenset[str]:
         """The variables of which a function changes more than by assigning to them."""
-        written = (one.path for one in fn.facts.accesses if one.kind != "read")
-        return frozenset(path.removeprefix("this.").partition(".")[0] for path in written)
+        return frozenset(one.path.removeprefix("this.").partition(".")[0] for one in fn.facts.accesses)
 
     @cached_method
     def _calls_own(self, fn: Fn) -> bool:

@@ -9,6 +9,7 @@ from collections.abc import Collection, Container, Iterable, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 
+from ...edges.reach import walk
 from ..facts.condition import Condition
 from .cmake.build import DefinedMacro
 
@@ -64,12 +65,7 @@ class Macros:
     def _follow(self, target: str) -> frozenset[str]:
         """A target and what it links, by links of links."""
         if target not in self._linked:
-            found, left = {target}, [target]
-            while left:
-                new = set(self._links.get(left.pop(), ())) - found
-                found |= new
-                left += new
-            self._linked[target] = frozenset(found)
+            self._linked[target] = frozenset(walk([target], lambda one: self._links.get(one, ())))
         return self._linked[target]
 
 

@@ -224,7 +224,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
     that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
-    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter, and that import
+    scripts: Python files whose first line names an interpreter, and that import
     nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter.
@@ -259,7 +259,6 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     allows: tuple[tuple[str, tuple[Allow, ...]], ...] = ()
     problems: tuple[tuple[str, int, str], ...] = ()
     files: tuple[str, ...] = ()
-    mains: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
     plain_scripts: tuple[str, ...] = ()
     shells: tuple[str, ...] = ()
@@ -564,7 +563,6 @@ class PackageJoin:
             allows=tuple(allows),
             problems=tuple(problems),
             files=self.files,
-            mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
             plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)),
             shells=tuple(shells),

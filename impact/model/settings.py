@@ -12,7 +12,7 @@ from typing import NamedTuple
 from ..facts.launch.actions import Action, LaunchFile, plain
 from ..facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..facts.launch.references import CLASS
-from ..facts.parameters import last_part
+from ..targets.parameters import last_part
 
 Changing = Mapping[str, frozenset[str]]
 """Last parts of parameters' names, with the packages of which some versions declare one so called."""

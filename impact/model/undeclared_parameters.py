@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.memory import kept_with
-from ..facts.parameters import last_part
 from ..targets.availability import decides
-from ..targets.parameters import renamed_parameters
+from ..targets.parameters import last_part, renamed_parameters
 from ..targets.surface.changes import PARAMETER
 from ..targets.surface.offers import Offered, PackageOffer
 

@@ -1,4 +1,4 @@
-"""Parameters of nodes that got another name.
+"""Parameters of nodes that got another name, and what their names are made of.
 
 Which parameters a version declares is told by the surfaces; that one came for another is what a person found in the
 sources. The facts are in `data/parameters.json`, each with the address that says so.
@@ -9,6 +9,11 @@ from functools import cache
 import msgspec
 
 from .snapshot import DATA, read_table
+
+
+def last_part(name: str) -> str:
+    """The last part of a parameter's name, in either generation of ROS."""
+    return name.replace("/", ".").rpartition(".")[2].lstrip("~")
 
 
 class RenamedParameters(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

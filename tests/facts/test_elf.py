@@ -112,7 +112,7 @@ def test_a_linked_program_says_what_it_needs_and_in_which_versions(linked):
     program = read_file(linked / "crane")
     assert program.program and program.dynamic
     assert "libwinch.so.2" in program.needed
-    assert (program.search, program.build_id) == (("$ORIGIN",), "1234abcd")
+    assert program.search == ("$ORIGIN",)
     assert {asked.library: asked.versions for asked in program.asked}["libwinch.so.2"] == ("WINCH_1", "WINCH_2")
     undefined = {symbol.name: symbol for symbol in program.undefined}
     assert (undefined["rope"].version, undefined["hook"].version) == ("WINCH_1", "WINCH_2")

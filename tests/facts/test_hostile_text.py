@@ -6,11 +6,11 @@ import subprocess
 import sys
 
 import pytest
+from rosimpact.databuild.extract.parameters import _cpp_value
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.allow import allows
 from rosimpact.impact.facts.cpp.flow_clean import Region, Regions, cleaned
 from rosimpact.impact.facts.markup import text_encoding
-from rosimpact.impact.facts.parameters import _cpp_value
 from rosimpact.impact.facts.setup import ENTRY_POINT
 from rosimpact.impact.facts.usage import template_arguments
 
@@ -106,7 +106,7 @@ HOSTILE = [
     ("xacro", "<" + "a" * 100_000),
     ("launch_xml", "<launch><a " + "a" * 100_000 + "></launch>"),
     ("flow_python", "x = '%" + "0" * 50_000 + "' % 1"),
-    ("parameters_cpp", 'void f(){n->declare_parameter("a", {' + "1" * 200 + "x});}"),
+    ("rosimpact.databuild.extract.parameters:cpp", 'void f(){n->declare_parameter("a", {' + "1" * 200 + "x});}"),
     ("setup_py", "from setuptools import setup\nsetup(entry_points={'console_scripts': ['a=b" + " " * 9_000 + ";']})"),
     ("pyproject", "a." * 50_000 + "a = 1"),
     ("pyproject", "x = {" + '"a".' * 50_000 + "a = 1}"),

@@ -4,6 +4,7 @@ import msgspec
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from rosimpact.databuild.extract import cpp, parameters, python
 from rosimpact.edges.limits import Limits, size_text
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.kinds import (
@@ -93,6 +94,7 @@ def test_first_line_tells_scripts_apart(data, kind):
     assert decode("script", encode(facts)) == facts
 
 
+KINDS = {*EXTRACTORS, cpp.__name__, python.__name__, *map(parameters.kind_of, parameters.LIMITS)}
 LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "parameters", "script", "settings")
 
 
@@ -103,6 +105,8 @@ LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "paramete
         ("cpp", "cpp"), ("flow_cpp", "cpp"), ("called_cpp", "cpp"), ("python", "python"), ("setup_py", "python"),
         ("flow_launch_python", "python"), ("launch_xml", "launch"), ("flow_launch_xml", "launch"),
         ("params", "parameters"), ("script", "script"), ("shell", "script"), ("pyproject", "settings"),
+        (cpp.__name__, "cpp"), (python.__name__, "python"),
+        *((parameters.kind_of(language), limit) for language, limit in parameters.LIMITS.items()),
     ],
 )  # fmt: skip
 def test_each_kind_has_its_limit(kind, limit, monkeypatch):
@@ -111,14 +115,14 @@ def test_each_kind_has_its_limit(kind, limit, monkeypatch):
     assert LIMITS[largest(kind)] == limit
 
 
-@pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script", "flow_script"} - SEARCHES))
+@pytest.mark.parametrize("kind", sorted(KINDS - {"script", "flow_script"} - SEARCHES))
 def test_what_is_too_large_is_named_and_not_read(kind):
     facts = extract(kind, b"#" * (largest(kind) + 1))
     assert [p.message for p in facts.facts.problems] == [f"larger than {size_text(largest(kind))}"]
     assert decode(kind, encode(facts)) == facts
 
 
-@pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - SEARCHES))
+@pytest.mark.parametrize("kind", sorted(KINDS - SEARCHES))
 @given(data=st.binary(max_size=300))
 @example(data=b"?")  # a YAML mapping whose only key is null
 @example(data=b"1: 2\nname: 3\n")

@@ -27,6 +27,8 @@ from rosimpact.corpus import robust
 from rosimpact.corpus.polite import ServiceAnswer
 from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
+from rosimpact.databuild.extract import cpp, python
+from rosimpact.databuild.extract import parameters as declared
 from rosimpact.databuild.surface import unpacked_deb
 from rosimpact.edges import console
 from rosimpact.edges.documents import DocumentError, load_json, load_toml, load_yaml
@@ -120,7 +122,7 @@ _DOCUMENTED = re.compile(
 
 def _is_documented(kind: str, message: str) -> bool:
     """Whether an extractor leaves it to kinds.extract() to say so."""
-    return kind.startswith("parameters_") and _DOCUMENTED.match(message) is not None
+    return kind.startswith(declared.__name__) and _DOCUMENTED.match(message) is not None
 
 
 def extractor(kind: str) -> Callable[[bytes], None]:
@@ -152,11 +154,15 @@ def _tables() -> dict[str, object]:
 
 def _raise_again(kind: str, data: bytes) -> None:
     """Runs an extractor without what catches its exceptions."""
-    module = kinds.EXTRACTORS[kind][0]
     if kind in kinds.SEARCHES:
         return  # its problem alone says what failed
-    read = import_module(f"rosimpact.impact.facts.{module}").extract
-    _ = read(data, kind) if module in kinds.WITH_KIND else read(data)
+    if kind in kinds.EXTRACTORS:
+        module = kinds.EXTRACTORS[kind][0]
+        path, variant = f"rosimpact.impact.facts.{module}", kind if module in kinds.WITH_KIND else ""
+    else:
+        path, _, variant = kind.partition(":")
+    read = import_module(path).extract
+    _ = read(data, variant) if variant else read(data)
     if kind == "setup_py":
         _raise_again("python", data)
 
@@ -412,7 +418,9 @@ def deb(data: bytes) -> None:
         return
 
 
-_KINDS = sorted(kinds.EXTRACTORS)
+_KINDS = sorted((
+    *kinds.EXTRACTORS, cpp.__name__, python.__name__, *map(declared.kind_of, declared.LIMITS),
+))  # fmt: skip
 
 
 def rows(data: bytes) -> None:
@@ -606,9 +614,9 @@ def _deb_seeds() -> dict[str, bytes]:
 
 _SEED_FOLDERS = {
     "manifest": "manifest", "manifest_variant": "manifest", "cmake": "cmake", "msg": "interface", "srv": "interface",
-    "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", "surface_cpp": "cpp",
-    "parameters_cpp": "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
-    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", "parameters_yaml": "launch_yaml",
+    "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", cpp.__name__: "cpp",
+    declared.kind_of("cpp"): "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
+    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", declared.kind_of("yaml"): "launch_yaml",
     "shell": "shell", "script": "shell", "flow_script": "shell", "setup_cfg": "cfg", "pyproject": "toml",
 }  # fmt: skip
 
@@ -650,7 +658,9 @@ def _memory_seeds() -> dict[str, bytes]:
 _EXTRACT = "extraction never raises and hides no exception; facts encode and decode to the same"
 _FOLLOWED = "following a launch file never raises"
 TARGETS: dict[str, Target] = {
-    f"facts_{kind}": Target(extractor(kind), language_of(kind), seeds_of(language_of(kind)), _EXTRACT)
+    f"facts_{kind.removeprefix('rosimpact.databuild.')}": Target(
+        extractor(kind), language_of(kind), seeds_of(language_of(kind)), _EXTRACT
+    )
     for kind in _KINDS
 }
 TARGETS.update({

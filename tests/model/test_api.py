@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 import pytest
+from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import CppCode
-from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.surface import Entity, offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.includes import Header as Read
 from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.providers.includes import (
     HeadersOfMachine,
     Includes,

@@ -3,11 +3,11 @@
 from types import SimpleNamespace
 
 import pytest
+from rosimpact.databuild.extract.cpp import extract as header
+from rosimpact.databuild.extract.python import extract as module
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.cpp.surface import extract as header
-from rosimpact.impact.facts.python.surface import extract as module
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_cpp import availability_of_use
 from rosimpact.impact.targets.surface.store import Surfaces

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 import pytest
+from rosimpact.databuild.extract.python import extract
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.python.surface import extract
 from rosimpact.impact.facts.python.uses import CallArguments, PythonUse
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike

@@ -1,8 +1,7 @@
 """Every row of the table of renamed parameters, against what the stored versions declare."""
 
 import pytest
-from rosimpact.impact.facts.parameters import last_part
-from rosimpact.impact.targets.parameters import all_renamed, renamed_parameters
+from rosimpact.impact.targets.parameters import all_renamed, last_part, renamed_parameters
 from rosimpact.impact.targets.surface.store import shipped
 from rosimpact.impact.targets.version import at_least
 

@@ -1,12 +1,12 @@
 """Which version in a file of surfaces stands for what is asked for, when there are no clones."""
 
 import pytest
+from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.clones import VersionError
 from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
 from rosimpact.databuild.surface.stored_versions import StoredVersions
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface

@@ -3,8 +3,8 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rosimpact.databuild.extract.cpp import extract
 from rosimpact.databuild.surface.compare_cpp import compare
-from rosimpact.impact.facts.cpp.surface import extract
 
 
 def told(old: str, new: str) -> list[tuple]:

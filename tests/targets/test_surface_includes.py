@@ -1,13 +1,13 @@
 """What headers of stored versions include, and what they bring along on a target across packages."""
 
 import pytest
+from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp.lexical import Include
-from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.targets.providers.includes import HeadersOfMachine, Includes, IncludesTable
 from rosimpact.impact.targets.surface.includes import Included

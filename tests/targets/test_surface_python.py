@@ -3,6 +3,7 @@
 import textwrap
 
 import pytest
+from rosimpact.databuild.extract import python
 from rosimpact.databuild.surface.compare_python import broken_by, compare
 from rosimpact.databuild.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.facts import kinds
@@ -239,8 +240,8 @@ def test_a_signature_is_written_as_python_does(parameters, head):
 
 
 def test_nothing_else_asks_for_these_facts():
-    assert "surface_python" not in {kinds.kind_of(path) for path in ("a.py", "b/__init__.py", "scripts/run")}
-    assert (kind_of("a.py"), kind_of("setup.py"), kind_of("a.txt")) == ("surface_python", None, None)
+    assert python.__name__ not in {kinds.kind_of(path) for path in ("a.py", "b/__init__.py", "scripts/run")}
+    assert (kind_of("a.py"), kind_of("setup.py"), kind_of("a.txt")) == (python.__name__, None, None)
 
 
 def test_modules_that_take_all_names_from_each_other(surface):

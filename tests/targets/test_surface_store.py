@@ -3,14 +3,14 @@
 import msgspec
 import pytest
 import zstandard
+from rosimpact.databuild.extract.cpp import extract as header
+from rosimpact.databuild.extract.python import extract as module
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
 from rosimpact.databuild.surface.headers import compiled
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.lexical import Include
-from rosimpact.impact.facts.cpp.surface import extract as header
 from rosimpact.impact.facts.interface import extract as interface
-from rosimpact.impact.facts.python.surface import extract as module
 from rosimpact.impact.targets.surface.store import StoredSurfacesError, SurfaceHistory, Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,

@@ -1,2 +1,2 @@
 """C++: what every check reads of a file (lexical.py), and its syntax where somebody asks: for names and types in use
-(code.py), for what a header offers (surface.py), and for the flow of messages (flow.py)."""
+(code.py), and for the flow of messages (flow.py). What a header offers is read by databuild/extract."""

@@ -30,7 +30,7 @@ from .flow_grammar import (
     node_readers,
 )
 from .flow_statements import CppStatements
-from .flow_values import READ, bare, flat
+from .flow_values import PASS, READ, bare, flat
 from .lexical import EXPORTING, beginning_lines, exports_of, scan
 from .names import joined
 
@@ -264,7 +264,7 @@ class _File(CppStatements):
                 if len(inner) == 1:
                     value = self.value(inner[0], base, READ, target)
                 else:
-                    value = FlowExpr("make", type_, self.arguments(given, base, bare(type_)))
+                    value = FlowExpr("make", type_, self.arguments(given, base, PASS))
             else:
                 value = self.value(given, base, READ, target)
         member = DataMember(variable if owner else target, type_ + marks, self.line(said), value)
@@ -422,9 +422,9 @@ class _File(CppStatements):
             given = parts[-1]
             inner = listed_in(given)
             if len(inner) == 1:
-                value = self.value(inner[0], guard, ("pass", target, 0), target)
+                value = self.value(inner[0], guard, PASS, target)
             else:
-                value = FlowExpr("make", "", self.arguments(given, guard, target) if inner else ())
+                value = FlowExpr("make", "", self.arguments(given, guard, PASS) if inner else ())
             self.assignments.append(Assignment(target, value, self.line(child), guard))
 
     def scope_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:

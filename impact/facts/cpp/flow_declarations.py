@@ -18,7 +18,7 @@ from .flow_grammar import (
     listed_in,
     node_readers,
 )
-from .flow_values import READ, VALUES, FunctionReader, Position, bare, flat
+from .flow_values import PASS, READ, VALUES, FunctionReader, bare, flat
 
 
 class Declarations(FunctionReader):
@@ -61,7 +61,7 @@ class Declarations(FunctionReader):
                 return None, marks
         return None, marks
 
-    def value_declaration(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_declaration(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
         """Local variables."""
         children = node.children
         kind_ = ""
@@ -119,7 +119,7 @@ class Declarations(FunctionReader):
             inner = listed_in(given)
             if len(inner) == 1:
                 return self.kept(children[0], inner[0], guard, kind_)
-        value = FlowExpr("make", kind_, self.arguments(given, guard, bare(kind_)))
+        value = FlowExpr("make", kind_, self.arguments(given, guard, PASS if bare(kind_) else READ))
         return self.assign(name, value, guard, kind_ + marks)
 
     def assign(self, name: Node, value: FlowExpr, guard: int, type_: str) -> FlowExpr:
@@ -160,14 +160,9 @@ class Declarations(FunctionReader):
         types = listed_in(listed)
         if not types or kind_ == "void":
             return
-        parts: list[FlowExpr] = []
-        callee = bare(kind_)
-        for child in types:
-            part = self.taken_for_parameter(child, guard, ("pass", callee, len(parts)))
-            if part is None:
-                return
-            parts.append(part)
-        self.assign(name, FlowExpr("make", kind_, tuple(parts)), guard, kind_ + marks)
+        parts = self.taken_for_parameters(types, guard)
+        if parts is not None:
+            self.assign(name, FlowExpr("make", kind_, parts), guard, kind_ + marks)
 
     def called_after(self, node: Node, guard: int, asked: str) -> bool:
         """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
@@ -180,16 +175,22 @@ class Declarations(FunctionReader):
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
         callee = bare(self.text[name.start_byte : name.end_byte])
-        parts: list[FlowExpr] = []
-        for child in listed_in(listed):
-            part = self.taken_for_parameter(child, inner, ("pass", callee, len(parts)))
-            if part is None:
-                return True
-            parts.append(part)
-        self.calls.append(FlowCall(callee, tuple(parts), line, column, inner))
+        parts = self.taken_for_parameters(listed_in(listed), inner)
+        if parts is not None:
+            self.calls.append(FlowCall(callee, parts, line, column, inner))
         return True
 
-    def taken_for_parameter(self, node: Node, guard: int, position: Position) -> FlowExpr | None:
+    def taken_for_parameters(self, nodes: list[Node], guard: int) -> tuple[FlowExpr, ...] | None:
+        """Arguments that the grammar took for the types of parameters; None when one of them is a parameter."""
+        parts: list[FlowExpr] = []
+        for node in nodes:
+            part = self.taken_for_parameter(node, guard)
+            if part is None:
+                return None
+            parts.append(part)
+        return tuple(parts)
+
+    def taken_for_parameter(self, node: Node, guard: int) -> FlowExpr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""
         children = grammatical(node)
         if node.kind_id != KIND.parameter_declaration or not children or children[0].kind_id not in TYPES:
@@ -197,19 +198,16 @@ class Declarations(FunctionReader):
         name = bare(self.text[children[0].start_byte : children[0].end_byte])
         if len(children) == 1:
             if name in self.known:
-                self.touch(name, node, guard, position)
+                self.touch(name, PASS)
             return FlowExpr("name", name)
         if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
             listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
-            parts: list[FlowExpr] = []
-            for child in listed_in(listed) if listed is not None else ():
-                part = self.taken_for_parameter(child, guard, ("pass", name, len(parts)))
-                if part is None:
-                    return None
-                parts.append(part)
+            parts = self.taken_for_parameters(listed_in(listed) if listed is not None else [], guard)
+            if parts is None:
+                return None
             line, column = self.place(children[0].start_byte)
-            self.calls.append(FlowCall(name, tuple(parts), line, column, guard))
-            return FlowExpr("call", name, tuple(parts))
+            self.calls.append(FlowCall(name, parts, line, column, guard))
+            return FlowExpr("call", name, parts)
         return None
 
     def parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
@@ -250,7 +248,7 @@ class Declarations(FunctionReader):
             result.append(FlowParameter(said, flat(written), default))
         return tuple(result)
 
-    def value_lambda_expression(self, node: Node, guard: int, position: Position, target: str) -> FlowExpr:
+    def value_lambda_expression(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
         line, column = self.place(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
@@ -296,7 +294,7 @@ class Declarations(FunctionReader):
         self.functions.append(
             FlowFunction(
                 self.name, self.owner, parameters, line, end, tuple(self.guards), tuple(self.calls),
-                tuple(self.assignments), tuple(self.accesses), (), returns, virtual, types=self.types,
+                tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), (), returns, virtual, types=self.types,
             )
         )  # fmt: skip
 

@@ -23,10 +23,7 @@ from .flow_clean import Cleaned, Regions
 from .flow_grammar import KIND, LISTS, LITERALS, OPERATORS, grammatical, listed_in, node_readers
 
 # A position: kind of access, callee it is passed to, number of the argument.
-Position = tuple[str, str, int]
-READ: Position = ("read", "", -1)
-ESCAPE: Position = ("escape", "", -1)
-WRITE: Position = ("write", "", -1)
+READ, WRITE, PASS, ESCAPE = "read", "write", "pass", "escape"
 RETURN = "return"  # in place of a target: no path is called so
 
 LONGEST_OTHER = 120
@@ -158,7 +155,7 @@ class FunctionReader:
         self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
         return len(self.guards) - 1
 
-    def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> FlowExpr:
+    def value(self, node: Node, guard: int, position: str = READ, target: str | None = "") -> FlowExpr:
         """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,
         None where nobody asks what it says."""
         return VALUES[node.kind_id](self, node, guard, position, target)
@@ -168,36 +165,33 @@ class FunctionReader:
         end = min(node.end_byte, start + 4 * LONGEST_OTHER)
         return FlowExpr("other", flat(self.text[start:end])[:LONGEST_OTHER])
 
-    def anything(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def anything(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
-                read(self, child, guard, ESCAPE if position is READ else position, None)
+                read(self, child, guard, ESCAPE if position == READ else position, None)
             elif child.child_count:
                 self.anything(child, guard, position, None)
         return NOTHING if target is None else self.other(node)
 
-    def value_comment(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_comment(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.other(node)
 
     value_type_descriptor = value_template_argument_list = value_primitive_type = value_comment
     value_type_identifier = value_field_identifier = value_comment
 
-    def value_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
-        start = node.start_byte
-        name = self.text[start : node.end_byte]
+    def value_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+        name = self.text[node.start_byte : node.end_byte]
         if name in self.known:
-            self.accesses.append(
-                Access(name, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
-            )
+            self.touch(name, position)
         return FlowExpr("name", name)
 
-    def value_number_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_number_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
     value_true = value_false = value_null = value_char_literal = value_number_literal
 
-    def value_string_literal(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_string_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
             return FlowExpr("text", text[1:-1])
@@ -216,7 +210,7 @@ class FunctionReader:
             text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
         return text
 
-    def value_concatenated_string(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_concatenated_string(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
@@ -231,21 +225,21 @@ class FunctionReader:
             return parts[0]
         return FlowExpr("join", "+", tuple(parts))
 
-    def value_qualified_identifier(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_qualified_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
 
     value_template_function = value_this = value_qualified_identifier
 
-    def value_field_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_field_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         path, local = self.path(node, guard)
         if local:
-            self.touch(path, node, guard, position)
+            self.touch(path, position)
         return FlowExpr("name", path)
 
-    def touch(self, path: str, node: Node, guard: int, position: Position) -> None:
-        self.accesses.append(
-            Access(path, position[0], bisect_right(self.starts, node.start_byte), guard, position[1], position[2])
-        )
+    def touch(self, path: str, position: str) -> None:
+        """Notes what may change a variable of the function."""
+        if position != READ:
+            self.accesses.append(Access(path, position))
 
     def path(self, node: Node, guard: int) -> tuple[str, bool]:
         """A path and whether it begins at a variable of the function; what stands inside, such as an index, is read."""
@@ -357,7 +351,7 @@ class FunctionReader:
         types = flat(self.text[written.start_byte + 1 : written.end_byte - 1])
         return self.text[name.start_byte : name.end_byte], types
 
-    def value_call_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_call_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
@@ -411,8 +405,6 @@ class FunctionReader:
             callee, types = self.templated(function)
         else:
             callee, local = self.path(function, guard)
-            if local:
-                self.touch(callee, function, guard, READ)
 
         listed = children[-1]
         if callee in THROUGH:
@@ -421,21 +413,17 @@ class FunctionReader:
                 return self.value(inner[0], guard, position, target)
         if local and receiver:
             if method in ELEMENTS:
-                self.touch(f"{receiver}.[]", node, guard, position)
+                self.touch(f"{receiver}.[]", position)
             elif method in POINTEES:
-                self.touch(receiver, node, guard, position)
-            elif method in LOOKS:
-                self.touch(receiver, node, guard, READ)
-            elif method in CHANGES:
-                self.touch(receiver, node, guard, WRITE)
-            else:
-                self.touch(receiver, node, guard, ("pass", callee, -1))
+                self.touch(receiver, position)
+            elif method not in LOOKS:
+                self.touch(receiver, WRITE if method in CHANGES else PASS)
         logs = noise(callee)
         arguments: tuple[FlowExpr, ...] = ()
         if listed.end_byte - listed.start_byte > 2:
             self.nesting += 1
             if listed.kind_id in LISTS:
-                arguments = self.arguments(listed, guard, "" if logs else callee)
+                arguments = self.arguments(listed, guard, READ if logs or not callee else PASS)
             else:
                 self.value(listed, guard, ESCAPE)
             self.nesting -= 1
@@ -453,48 +441,30 @@ class FunctionReader:
             return FlowExpr("make", types, arguments)
         return FlowExpr("call", callee, arguments, received)
 
-    def arguments(self, listed: Node, guard: int, callee: str) -> tuple[FlowExpr, ...]:
-        """The arguments in a list, passed to a callee; without one they are merely read."""
-        result: list[FlowExpr] = []
-        text = self.text
-        known = self.known
-        for child in listed.named_children:
-            number = child.kind_id
-            if number == KIND.identifier:
-                start = child.start_byte
-                name = text[start : child.end_byte]
-                if name in known:
-                    line = bisect_right(self.starts, start)
-                    self.accesses.append(
-                        Access(name, "pass", line, guard, callee, len(result))
-                        if callee
-                        else Access(name, "read", line, guard)
-                    )
-                result.append(FlowExpr("name", name))
-            elif number != KIND.comment:
-                position = ("pass", callee, len(result)) if callee else READ
-                result.append(VALUES[number](self, child, guard, position, ""))
-        return tuple(result)
+    def arguments(self, listed: Node, guard: int, position: str) -> tuple[FlowExpr, ...]:
+        """The arguments in a list, each in the same position."""
+        given = (child for child in listed.named_children if child.kind_id != KIND.comment)
+        return tuple(VALUES[child.kind_id](self, child, guard, position, "") for child in given)
 
-    def value_subscript_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_subscript_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         path, local = self.path(children[0], guard)
         index = FlowExpr("other")
         for child in listed_in(children[1]):
             index = self.value(child, guard)
         if local:
-            self.touch(f"{path}.[]", node, guard, position)
+            self.touch(f"{path}.[]", position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
     def value_parenthesized_expression(
-        self, node: Node, guard: int, position: Position, target: str | None
+        self, node: Node, guard: int, position: str, target: str | None
     ) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
         return self.value(children[1], guard, position, target)
 
-    def value_pointer_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_pointer_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
@@ -507,12 +477,12 @@ class FunctionReader:
                     return FlowExpr("function", name)
         return self.value(inner, guard, position, target)
 
-    def value_cast_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_cast_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.value(grammatical(node)[-1], guard, position, target)
 
     value_initializer_pair = value_co_await_expression = value_cast_expression
 
-    def value_binary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_binary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """Operators in a row are walked through, since a long row is a deep tree."""
         operands: list[Node] = []
         signs: list[str] = []
@@ -576,19 +546,19 @@ class FunctionReader:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
-    def value_unary_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_unary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         inner = self.value(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
             return FlowExpr("number", "-" + inner.text)
         return NOTHING if target is None else self.other(node)
 
-    def value_update_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_update_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
         path, local = self.path(operand, guard)
         if local:
-            self.touch(path, operand, guard, WRITE)
+            self.touch(path, WRITE)
         sign = (
             "+="
             if "++" in (self.text[node.start_byte : node.start_byte + 2], self.text[node.end_byte - 2 : node.end_byte])
@@ -597,17 +567,17 @@ class FunctionReader:
         self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.line(node), guard, "", sign))
         return FlowExpr("name", path)
 
-    def value_assignment_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_assignment_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 3:
             return self.anything(node, guard, position, target)
         left, sign, right = children
         path, local = self.path(left, guard)
         if local:
-            self.touch(path, left, guard, WRITE)
+            self.touch(path, WRITE)
         operator = self.text[sign.start_byte : sign.end_byte]
         followed = operator != "=" or path in self.known
-        value = self.value(right, guard, READ if followed else ("escape", path, -1), path)
+        value = self.value(right, guard, READ if followed else ESCAPE, path)
         self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator, self.key(left, guard)))
         return value
 
@@ -618,7 +588,7 @@ class FunctionReader:
         inner = listed_in(grammatical(node)[1])
         return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
-    def value_conditional_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_conditional_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = grammatical(node)
         if len(children) != 5:
             return self.anything(node, guard, position, target)
@@ -643,7 +613,7 @@ class FunctionReader:
             node = children[1]
         return self.said(node)
 
-    def value_initializer_list(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_initializer_list(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
             self.anything(node, guard, ESCAPE, "")
             return self.other(node)
@@ -652,7 +622,7 @@ class FunctionReader:
         self.nesting -= 1
         return FlowExpr("list", "", parts)
 
-    def value_new_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_new_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
         children = grammatical(node)
         kind_ = ""
@@ -660,7 +630,7 @@ class FunctionReader:
         self.nesting += 1
         for child in children:
             if child.kind_id in (KIND.argument_list, KIND.initializer_list):
-                parts = self.arguments(child, guard, bare(kind_) or "new")
+                parts = self.arguments(child, guard, PASS)
             elif child.is_named and not kind_:
                 kind_ = self.said(child)
         self.nesting -= 1
@@ -670,10 +640,10 @@ class FunctionReader:
 
     value_compound_literal_expression = value_new_expression
 
-    def value_throw_statement(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_throw_statement(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.anything(node, guard, ESCAPE, "")
 
-    def value_sizeof_expression(self, node: Node, guard: int, position: Position, target: str | None) -> FlowExpr:
+    def value_sizeof_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:

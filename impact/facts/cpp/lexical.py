@@ -47,8 +47,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
     exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
-    packages and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main
-    function.
+    packages and files named by literals (`package://`, getPath, get_package_share_directory).
     types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
     is not followed. variables: qualified types of which some line declares a variable or member itself, not a pointer
     or reference.
@@ -62,7 +61,6 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
     exports: tuple[str, ...] = ()
     references: tuple[Reference, ...] = ()
-    main: bool = False
     types: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
 
@@ -121,8 +119,6 @@ _TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
 _SIMPLE_NAME = re.compile(r"([^\W\d]\w*)(?:::[^\W\d]\w*)+")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
-_MAIN = re.compile(r"main\s*\(")
-_BEFORE_MAIN = re.compile(r"\b(?:int|auto|void)\s+(?:\w+\s+)?$")
 _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
     r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES"
@@ -507,7 +503,6 @@ def extract(data: bytes) -> CppFile:
         problems=tuple(sorted(scanned.problems, key=_by_line)),
         exports=exports_of(visible) if any(word in tokens_text for word in _EXPORTING) else (),
         references=_references(scanned.text, visible, place),
-        main="main" in tokens_text and _has_main(visible),
         types=types_of(visible, tokens_text) if "namespace" in tokens_text else (),
         variables=_variables(visible),
     )
@@ -515,12 +510,6 @@ def extract(data: bytes) -> CppFile:
 
 def _using(visible: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible)))
-
-
-def _has_main(visible: str) -> bool:
-    return any(
-        _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
-    )
 
 
 def _tie(visible: str) -> str:

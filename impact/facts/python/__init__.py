@@ -1,1 +1,1 @@
-"""Python sources: read once (source.py), then told what they use (reader.py), offer (surface.py) and do (flow.py)."""
+"""Python sources: read once (source.py), then told what they use (reader.py) and do (flow.py)."""

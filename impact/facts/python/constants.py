@@ -7,7 +7,6 @@ Text, places in packages, lists and mappings are followed through names, f-strin
 from __future__ import annotations
 
 import ast
-from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
@@ -206,23 +205,3 @@ Constants.evaluators = node_methods(Constants, "value_")
 def source_of(node: ast.expr) -> str:
     text = " ".join(ast.unparse(node).split())
     return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
-
-
-def module_constants(tree: ast.Module) -> Constants:
-    """The names that the module itself binds and nothing in it binds again, so that they mean the same everywhere."""
-    bound = Counter(
-        node.id if isinstance(node, ast.Name) else node.arg
-        for node in ast.walk(tree)
-        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load))
-    )
-    constants = Constants()
-    for statement in tree.body:
-        if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
-            target = statement.targets[0]
-        elif isinstance(statement, ast.AnnAssign):
-            target = statement.target
-        else:
-            continue
-        if isinstance(target, ast.Name) and bound[target.id] == 1 and statement.value is not None:
-            constants.assign(target, constants.value(statement.value))
-    return constants

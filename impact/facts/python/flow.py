@@ -83,7 +83,7 @@ class PythonStatements(Expressions):
         for body in self.bodies:
             if body.outer is not None:
                 for name in sorted(body.captured):
-                    body.outer.captures(name, body)
+                    body.outer.accesses.append(Access(name, "escape"))
 
     def block(self, statements: list[ast.stmt]) -> Leaving:
         """Reads statements; gives how control leaves them."""
@@ -225,7 +225,7 @@ class PythonStatements(Expressions):
                 self.visit(item.context_expr)
                 heads.append(self.source(item.context_expr))
             else:
-                value = self.value(item.context_expr, "read", target=self.spelt(variable))
+                value = self.value(item.context_expr, "read", self.spelt(variable))
                 self.bind(variable, value, node.lineno)
                 heads.append(f"{self.source(item.context_expr)} as {self.source(variable)}")
         leaving = self.under("with", ", ".join(heads), node.lineno, node.body)
@@ -319,13 +319,13 @@ class PythonStatements(Expressions):
 
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
-            value = self.value(node.value, "escape", target="return")
+            value = self.value(node.value, "escape", "return")
             self.add_assignment("", value, node.lineno, "return")
         return JUMPS
 
     def give(self, node: ast.expr) -> None:
         """The body of a lambda, which is what it returns."""
-        self.add_assignment("", self.value(node, "escape", target="return"), node.lineno, "return")
+        self.add_assignment("", self.value(node, "escape", "return"), node.lineno, "return")
 
     def read_Raise(self, node: ast.Raise) -> Leaving:
         if node.exc is not None:
@@ -359,9 +359,8 @@ class PythonStatements(Expressions):
             value = self.unpacked(first, node.value)
         else:
             to = self.spelt(first)
-            local = self.is_local(first)
-            use = "read" if local or to.partition(".")[0] in self.locals else "escape"
-            value = self.value(node.value, use, "" if local else to, target=to)
+            use = "read" if self.is_local(first) or to.partition(".")[0] in self.locals else "escape"
+            value = self.value(node.value, use, to)
         for place, target in enumerate(targets):
             self.bind(target, value if place < MOST_TARGETS else ANY, node.lineno)
         return STAYS
@@ -375,18 +374,14 @@ class PythonStatements(Expressions):
         parts = target.elts
         if value.__class__ in (ast.Tuple, ast.List) and len(value.elts) == len(parts):  # type: ignore[attr-defined]
             pairs = zip(parts, value.elts)  # type: ignore[attr-defined] # noqa: B905
-            return FlowExpr(
-                "list", "", tuple(self.value(each, "escape", target=self.spelt(part)) for part, each in pairs)
-            )
+            return FlowExpr("list", "", tuple(self.value(each, "escape", self.spelt(part)) for part, each in pairs))
         return self.value(value, "escape")
 
     def read_AnnAssign(self, node: ast.AnnAssign) -> Leaving:
         type = self.annotation(node.annotation)
         target = node.target
         if node.value is not None:
-            to = self.spelt(target)
-            local = self.is_local(target)
-            value = self.value(node.value, "read" if local else "escape", "" if local else to, target=to)
+            value = self.value(node.value, "read" if self.is_local(target) else "escape", self.spelt(target))
             self.bind(target, value, node.lineno, type)
         elif target.__class__ is ast.Name:
             if self.in_class:
@@ -408,7 +403,7 @@ class PythonStatements(Expressions):
         target = node.target
         self.visit(target)
         path = self.spelt(target)
-        value = self.value(node.value, "read", path, target=path if node.op.__class__ is ast.Add else "")
+        value = self.value(node.value, "read", path if node.op.__class__ is ast.Add else "")
         self.bind(target, value, node.lineno, operator=_OPERATORS[node.op.__class__])
         return STAYS
 
@@ -417,7 +412,7 @@ class PythonStatements(Expressions):
             if target.__class__ is ast.Attribute or target.__class__ is ast.Subscript:
                 path, local = self.reach(target)
                 if local:
-                    self.accesses.append(Access(path, "write", target.lineno, self.guard))
+                    self.touch(path, "write")
         return STAYS
 
     def read_Global(self, node: ast.Global | ast.Nonlocal) -> Leaving:
@@ -509,7 +504,6 @@ class PythonStatements(Expressions):
         around = outer.outer if outer.is_class else outer
         body = Body(name, cls, node.lineno, last, around if around and around.name else None)
         body.is_class = True
-        body.made = saved
         self.bodies.append(body)
         self.enter(body)
         self.own, self.in_class = set(cls.methods), True

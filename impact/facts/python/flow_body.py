@@ -32,7 +32,7 @@ class ClassBody(msgspec.Struct, eq=False):
 
 class Body(msgspec.Struct, eq=False):
     """A function while it is read. this: the name by which it knows its object, empty for none. outer: the function
-    around it whose variables it sees. made: guard under which it is defined in outer. outside: names declared global or
+    around it whose variables it sees. outside: names declared global or
     nonlocal."""
 
     name: str
@@ -40,7 +40,6 @@ class Body(msgspec.Struct, eq=False):
     line: int
     end: int
     outer: Body | None = None
-    made: int = -1
     is_class: bool = False
     this: str = ""
     parameters: tuple[FlowParameter, ...] = ()
@@ -69,10 +68,6 @@ class Body(msgspec.Struct, eq=False):
             outer = outer.outer
         return False
 
-    def captures(self, name: str, inner: Body) -> None:
-        """A function inside this one uses one of its variables."""
-        self.accesses.append(Access(name, "escape", inner.line, inner.made, inner.name))
-
     def says_something(self) -> bool:
         """False for the body of a class that does nothing but define."""
         return not self.is_class or bool(self.calls or self.assignments or self.guards)
@@ -81,5 +76,6 @@ class Body(msgspec.Struct, eq=False):
         owner = self.cls.name if self.cls is not None else ""
         return FlowFunction(
             self.name, owner, self.parameters, self.line, self.end, tuple(self.guards), tuple(self.calls),
-            tuple(self.assignments), tuple(self.accesses), self.decorators, self.returns, outside=tuple(self.outside),
+            tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), self.decorators, self.returns,
+            outside=tuple(self.outside),
         )  # fmt: skip

@@ -1,9 +1,9 @@
-"""What stands inside Python functions: expressions to calls, assignments and uses of variables.
+"""What stands inside Python functions: expressions to calls, assignments and what may change variables.
 
 One walk does it all; what nobody asks the value of (a condition, an operand) is visited without making an Expr of it.
 
-A use of a parameter or local variable is judged by where it stands: a test or an operand is a `read`, an argument is a
-`pass`, a method called on it too, with position -1; the value of another local variable is a `read`, since the
+A use of a parameter or local variable is judged by where it stands: a test or an operand is a `read`, which is not
+noted; an argument is a `pass`, a method called on it too; the value of another local variable is a `read`, since the
 Assignment tells what goes on from there; what is kept elsewhere, returned or listed is an `escape`.
 """
 
@@ -80,8 +80,18 @@ class Expressions(SourceText):
         self.guards.append(Guard(kind, text, line, self.guard, early))
         self.guard = len(self.guards) - 1
 
-    def sees(self, name: str) -> bool:
-        return self.body.outer is not None and self.body.sees(name)
+    def knows(self, name: str) -> bool:
+        """Whether a name is a variable of the function, or of one around it, which then is captured."""
+        return name in self.locals or (self.body.outer is not None and self.body.sees(name))
+
+    def touch(self, path: str, use: str) -> None:
+        """Notes what may change a variable of the function."""
+        if use != "read":
+            self.accesses.append(Access(path, use))
+
+    def count_notes(self) -> int:
+        """How much was noted of the function up to here."""
+        return len(self.calls) + len(self.accesses) + len(self.assignments)
 
     def is_function(self, name: str) -> bool:
         body = self.body
@@ -147,14 +157,10 @@ class Expressions(SourceText):
                     self.visit(one)
 
     def visit_Name(self, node: ast.Name) -> None:
-        name = node.id
-        if name in self.locals or self.sees(name):
-            self.accesses.append(Access(name, "read", node.lineno, self.guard))
+        self.knows(node.id)
 
     def visit_Attribute(self, node) -> None:
-        path, local = self.reach(node)
-        if local:
-            self.accesses.append(Access(path, "read", node.lineno, self.guard))
+        self.reach(node)
 
     visit_Subscript = visit_Attribute
 
@@ -163,12 +169,12 @@ class Expressions(SourceText):
         kind = "if" if node.op.__class__ is ast.And else "unless"
         values = node.values
         self.visit(values[0])
-        facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+        facts = self.count_notes()
         for before, value in pairwise(values):
             self.push(kind, self.source(before), before.lineno)
             self.visit(value)
         self.guard = saved
-        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+        if facts == self.count_notes():
             del self.guards[count:]
 
     def visit_IfExp(self, node) -> None:
@@ -210,7 +216,7 @@ class Expressions(SourceText):
             head = node.id
             if head == self.this:
                 head = "this"
-            elif head in self.locals or self.sees(head):
+            elif self.knows(head):
                 local = True
             elif head in self.own:
                 head = "this." + head
@@ -225,9 +231,9 @@ class Expressions(SourceText):
         parts.reverse()
         return ".".join(parts), local
 
-    def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> FlowExpr:
-        """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
-        in, `return` for what the function returns."""
+    def value(self, node, use: str, target: str = "") -> FlowExpr:
+        """An expression. use: the Access that it is if it is a path, `read` for none; target: what it is kept in,
+        `return` for what the function returns."""
         cls = node.__class__
         if cls is ast.Constant:
             return self.constant(node)
@@ -235,8 +241,8 @@ class Expressions(SourceText):
             name = node.id
             if name == self.this:
                 return FlowExpr("name", "this")
-            if name in self.locals or self.sees(name):
-                self.accesses.append(Access(name, use, node.lineno, self.guard, to, position, keyword))
+            if self.knows(name):
+                self.touch(name, use)
                 return FlowExpr("name", name)
             if name in self.own:
                 return self.member("this." + name, name)
@@ -244,7 +250,7 @@ class Expressions(SourceText):
         if cls is ast.Attribute:
             path, local = self.reach(node)
             if local:
-                self.accesses.append(Access(path, use, node.lineno, self.guard, to, position, keyword))
+                self.touch(path, use)
                 return FlowExpr("name", path)
             head, _, name = path.rpartition(".")
             if head == "this":
@@ -255,14 +261,11 @@ class Expressions(SourceText):
             return self.called(node, target)
         maker = _VALUES.get(cls)
         if maker is not None:
-            return maker(self, node, use, to, position, keyword, target)
+            return maker(self, node, use, target)
         self.visit(node)
         return self.other(node)
 
-    def value_Subscript(
-        self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str
-    ) -> FlowExpr:
-        mark = len(self.accesses)
+    def value_Subscript(self, node: ast.Subscript, use: str, target: str) -> FlowExpr:
         container = self.value(node.value, "read")
         if node.slice.__class__ is ast.Slice:
             self.visit(node.slice)
@@ -272,32 +275,29 @@ class Expressions(SourceText):
             index = self.value(node.slice, "read")
             suffix = ".[]"
         # The element is used, not the container.
-        if mark < len(self.accesses) and node.value.__class__ in _PATHS:
+        if node.value.__class__ in _PATHS:
             path = self.spelt(node.value)
-            for place in range(mark, len(self.accesses)):
-                access = self.accesses[place]
-                if access.path == path:
-                    self.accesses[place] = Access(path + suffix, use, access.line, access.guard, to, position, keyword)
-                    break
+            if self.knows(path.partition(".")[0]):
+                self.touch(path + suffix, use)
         return FlowExpr("index", "", (container, index))
 
-    def value_IfExp(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_IfExp(self, node: ast.IfExp, use: str, target: str) -> FlowExpr:
         saved = self.guard
         self.visit(node.test)
         text, line = self.source(node.test), node.test.lineno
         count = len(self.guards)
-        facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+        facts = self.count_notes()
         self.push("if", text, line)
-        true = self.value(node.body, use, to, position, keyword, target)
+        true = self.value(node.body, use, target)
         self.guard = saved
         self.push("unless", text, line)
-        false = self.value(node.orelse, use, to, position, keyword, target)
+        false = self.value(node.orelse, use, target)
         self.guard = saved
-        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+        if facts == self.count_notes():
             del self.guards[count:]
         return FlowExpr("choice", "", (FlowExpr("other", text[:LONGEST_OTHER]), true, false))
 
-    def value_BoolOp(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_BoolOp(self, node: ast.BoolOp, use: str, target: str) -> FlowExpr:
         """`a or b` is a choice between a and b; `a and b` one between b and a."""
         saved, count = self.guard, len(self.guards)
         both = node.op.__class__ is ast.And
@@ -307,12 +307,12 @@ class Expressions(SourceText):
         for operand in node.values:
             if texts:
                 self.push("if" if both else "unless", texts[-1], operand.lineno)
-            values.append(self.value(operand, use, to, position, keyword, target))
+            values.append(self.value(operand, use, target))
             if not texts:
-                facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+                facts = self.count_notes()
             texts.append(self.source(operand))
         self.guard = saved
-        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+        if facts == self.count_notes():
             del self.guards[count:]
         result = values.pop()
         texts.pop()
@@ -329,10 +329,10 @@ class Expressions(SourceText):
         self.visit(operand)
         return self.other(node)
 
-    def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_Tuple(self, node, use: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
-        kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
+        kept = [self.value(each, "escape", element) for each in elements[:LONGEST_LIST]]
         if len(elements) > LONGEST_LIST:
             for each in elements[LONGEST_LIST:]:
                 self.visit(each)
@@ -341,7 +341,7 @@ class Expressions(SourceText):
 
     value_List = value_Set = value_Tuple
 
-    def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_Dict(self, node: ast.Dict, use: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         pairs: list[FlowExpr] = []
         for key, value in zip(node.keys, node.values, strict=False):
@@ -350,21 +350,21 @@ class Expressions(SourceText):
             if len(pairs) > LONGEST_LIST:
                 self.visit(value)
             elif key is None:
-                pairs.append(FlowExpr("keyword", "**", (self.value(value, "escape", to),)))
+                pairs.append(FlowExpr("keyword", "**", (self.value(value, "escape"),)))
             else:
                 name = self.value(key, "read")
-                pairs.append(FlowExpr("list", "", (name, self.value(value, "escape", to, target=element))))
+                pairs.append(FlowExpr("list", "", (name, self.value(value, "escape", element))))
         return FlowExpr("list", "", tuple(pairs))
 
-    def value_Starred(self, node: ast.Starred, use: str, to: str, *_: object) -> FlowExpr:
-        return FlowExpr("keyword", "*", (self.value(node.value, "escape", to),))
+    def value_Starred(self, node: ast.Starred, use: str, *_: object) -> FlowExpr:
+        return FlowExpr("keyword", "*", (self.value(node.value, "escape"),))
 
-    def value_Await(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
-        return self.value(node.value, use, to, position, keyword, target)
+    def value_Await(self, node: ast.Await, use: str, target: str) -> FlowExpr:
+        return self.value(node.value, use, target)
 
     def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> FlowExpr:
         target = self.spelt(node.target)
-        value = self.value(node.value, "read", target, target=target)
+        value = self.value(node.value, "read", target)
         self.bind(node.target, value, node.lineno)
         return value
 
@@ -381,7 +381,6 @@ class Expressions(SourceText):
         current = self.body
         outer = current.outer if current.is_class else current if current.name else None
         body = Body(name, current.cls, node.lineno, node.end_lineno, outer)
-        body.made = self.guard
         body.this = current.this
         body.parameters = self.parameters(arguments)
         for parameter in body.parameters:
@@ -403,7 +402,7 @@ class Expressions(SourceText):
             found.append(FlowParameter(name, self.annotation(argument.annotation), value))
         return tuple(found)
 
-    def value_ListComp(self, node, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_ListComp(self, node, use: str, target: str) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
@@ -414,9 +413,9 @@ class Expressions(SourceText):
         element = target + ".[]" if target and target != "return" else ""
         if node.__class__ is ast.DictComp:
             self.visit(node.key)
-            each = self.value(node.value, "escape", to, target=element)
+            each = self.value(node.value, "escape", element)
         else:
-            each = self.value(node.elt, "escape", to, target=element)
+            each = self.value(node.elt, "escape", element)
         self.guard, self.in_class = saved, in_class
         return FlowExpr("other", self.other(node).text, (each,))
 
@@ -475,7 +474,7 @@ class Expressions(SourceText):
         elif cls is ast.Attribute or cls is ast.Subscript:
             path, local = self.reach(target)
             if local:
-                self.accesses.append(Access(path, "write", line, self.guard))
+                self.touch(path, "write")
             elif path.startswith("this.") and path.count(".") == 1 and operator == "=" and self.body.cls is not None:
                 self.body.cls.member(path[5:], type or made(value), line, value)
             key = target.slice if cls is ast.Subscript and target.slice.__class__ is ast.Constant else None
@@ -500,7 +499,7 @@ class Expressions(SourceText):
 
     # Strings and paths that are put together: joins of their pieces
 
-    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> FlowExpr:
+    def value_BinOp(self, node: ast.BinOp, use: str, target: str) -> FlowExpr:
         op = node.op.__class__
         if op is ast.Add:
             # Long sums lean to the left.
@@ -629,24 +628,22 @@ class Expressions(SourceText):
         func = node.func
         cls = func.__class__
         line = node.lineno
-        accesses = self.accesses
         reading, keeping, kept = False, -1, ""
         if cls is ast.Attribute:
             path, local = self.reach(func.value)  # type: ignore[attr-defined]
             attribute = func.attr  # type: ignore[attr-defined]
             callee = f"{path}.{attribute}"
             if local:
-                accesses.append(Access(path, "pass", line, self.guard, callee))
+                self.touch(path, "pass")
             keeping = _KEEPING.get(attribute, -1)
             kept = path + ".[]"
         elif cls is ast.Name:
             name = func.id  # type: ignore[attr-defined]
-            if name in self.locals or self.sees(name):
-                accesses.append(Access(name, "read", line, self.guard))
-            elif name in self.own:
-                callee = name = "this." + name
-            else:
-                reading = name in _READING
+            if not self.knows(name):
+                if name in self.own:
+                    name = "this." + name
+                else:
+                    reading = name in _READING
             callee = name if name != self.this else "this"
         else:
             callee, _ = self.reach(func)
@@ -658,18 +655,17 @@ class Expressions(SourceText):
             elif reading:
                 arguments.append(self.value(argument, "read"))
             elif inside in _PATHS:
-                arguments.append(self.value(argument, "pass", callee, place))
+                arguments.append(self.value(argument, "pass"))
             else:
                 inner = kept if place == keeping else ""
-                arguments.append(self.value(argument, "escape", callee, target=inner))
+                arguments.append(self.value(argument, "escape", inner))
         for keyword in node.keywords:
             value, name = keyword.value, keyword.arg
             if name is None:
-                arguments.append(FlowExpr("keyword", "**", (self.value(value, "escape", callee),)))
-            elif value.__class__ in _PATHS:
-                arguments.append(FlowExpr("keyword", name, (self.value(value, "pass", callee, -1, name),)))
+                arguments.append(FlowExpr("keyword", "**", (self.value(value, "escape"),)))
             else:
-                arguments.append(FlowExpr("keyword", name, (self.value(value, "escape", callee),)))
+                use = "pass" if value.__class__ in _PATHS else "escape"
+                arguments.append(FlowExpr("keyword", name, (self.value(value, use),)))
         given = tuple(arguments)
         if callee != "super":
             returned = target == "return"

@@ -105,7 +105,6 @@ class PythonReader(ObjectUses, SourceText):
         self.defining: tuple[PythonScope, str] | None = None
         self.needs: tuple[int, int, str] | None = None
         self.python2_only: list[Problem] = []
-        self.main = False
         self.function = False
         self.conditions: tuple[Condition, ...] = ()
         self.consumed: set[int] = set()
@@ -332,7 +331,6 @@ class PythonReader(ObjectUses, SourceText):
         test = self.source(node.test)
         self.visit(node.test)
         if "__main__" in test and "__name__" in test:
-            self.main = True
             self.main_lines = range(node.body[0].lineno, (node.body[-1].end_lineno or 0) + 1)
             self.block(node.body)
             self.block(node.orelse)

@@ -29,7 +29,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not; NO_PYTHON), or None. interpreter: the first line when it is a `#!` that names python.
-    main: has an `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of
+    uses: what calls and objects tell besides the attributes. fields: of
     interfaces. words: see words_of(). unbound: names that nothing in the file binds, and methods, with a dot before,
     that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can import from it;
     empty where that cannot be told, and two spaces where there are none.
@@ -41,7 +41,6 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python2_only: tuple[Problem, ...] = ()
     needs: tuple[int, int, str] | None = None
     interpreter: str = ""
-    main: bool = False
     problems: tuple[Problem, ...] = ()
     uses: tuple[PythonUse, ...] = ()
     words: str = ""
@@ -175,7 +174,6 @@ def extract(data: bytes) -> PythonFile:
                 python2_only=old or tuple(reader.python2_only),
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
-                main=reader.main,
                 problems=problems,
                 uses=reader.object_uses(reader.column),
                 words=words_of(data),
@@ -192,7 +190,6 @@ def extract(data: bytes) -> PythonFile:
         python2_only=old,
         needs=(NO_PYTHON, refused, "SyntaxError") if refused else None,
         interpreter=interpreter,
-        main="__main__" in text,
         problems=problems,
         words=words_of(data),
     )

@@ -20,18 +20,15 @@ HEADER_NAME = re.compile(f"(?:{'|'.join(map(re.escape, HEADER_ENDINGS))})\\Z")
 
 class InstalledHeaders(NamedTuple):
     """The headers of a package that are installed. headers: path in the tree to its path in the prefix. known: nothing
-    else can be there, as no rule installs what cannot be told. by_file: paths of headers that a rule names itself,
-    rather than the folder they lie in."""
+    else can be there, as no rule installs what cannot be told."""
 
     headers: dict[str, str]
     known: bool
-    by_file: frozenset[str]
 
 
 def installed_headers(package: Package) -> InstalledHeaders:
     """The headers that the package's rules install, whatever condition they stand under."""
     found: dict[str, str] = {}
-    by_file: set[str] = set()
     known = not package.build.unresolved
     for install in package.build.installs:
         destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
@@ -46,11 +43,9 @@ def installed_headers(package: Package) -> InstalledHeaders:
         for path, place in copied_files(install, destination, package.digest.files):
             if HEADER_NAME.search(place):
                 found[path] = place
-                if install.kind != "directory":
-                    by_file.add(path)
     if any(found_.how == "ament_auto" for found_ in package.build.found):
         known = known and package.build.ament_package is not None
-    return InstalledHeaders(found, known, frozenset(by_file))
+    return InstalledHeaders(found, known)
 
 
 def copied_files(install: Install, destination: str, files: tuple[str, ...]) -> Iterator[tuple[str, str]]:

@@ -200,21 +200,6 @@ def test_references(text, expected):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("int main(int argc, char** argv) {}", True),
-        ("int\nmain()", True),
-        ("auto main() -> int {}", True),
-        ("int domain(int x);", False),
-        ("// int main()", False),
-        ("call(main(1))", False),
-    ],
-)
-def test_main(text, expected):
-    assert extract(text.encode()).main is expected
-
-
-@pytest.mark.parametrize(
     ("text", "line", "part"),
     [
         ("\n/* no end", 2, "comment without an end"),

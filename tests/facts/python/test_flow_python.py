@@ -454,65 +454,57 @@ def test_functions_named_without_being_called():
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("if m.a > m.b.c: pass", ["read m.a", "read m.b.c"]),
-        ("x = m.a", ["read m.a"]),
-        ("self.x = m.a", ["escape m.a self.x"]),
-        ("g[0] = m", ["escape m g.[]"]),
-        ("x = m\nx.y = 1", ["read m", "write x.y"]),
+        ("if m.a > m.b.c: pass", []),
+        ("x = m.a", []),
+        ("self.x = m.a", ["escape m.a"]),
+        ("g[0] = m", ["escape m"]),
+        ("x = m\nx.y = 1", ["write x.y"]),
         ("m.a = 1", ["write m.a"]),
         ("m.a[i].b = 1", ["write m.a.[].b"]),
-        ("m.n += 1", ["read m.n", "write m.n"]),
+        ("m.n += 1", ["write m.n"]),
         ("del m.a", ["write m.a"]),
-        ("o = T()\no.h = m.h", ["read m.h o.h", "write o.h"]),
-        ("g(1, m.a)", ["pass m.a g 1"]),
-        ("g(k=m)", ["pass m g -1 k"]),
-        ("g(*m.a)", ["escape m.a g"]),
-        ("g([m])", ["escape m g"]),
-        ("g(m.a + 1)", ["read m.a"]),
-        ("g(m[0].a)", ["pass m.[].a g 0"]),
-        ("g(m.a[0])", ["pass m.a.[] g 0"]),
-        ("g(m.a[1:])", ["pass m.a g 0"]),
-        ("g(m.a if m.b else 0)", ["read m.b", "escape m.a g"]),
-        ("len(m.a)", ["read m.a"]),
-        ("x = float(m.a)", ["read m.a"]),
-        ("[p for p in m.a]", ["read m.a", "escape p"]),
-        ("m.a.append(1)", ["pass m.a m.a.append -1"]),
-        ("x = f'{m.a}'", ["read m.a"]),
-        ("x = '%s' % m.a", ["read m.a"]),
+        ("o = T()\no.h = m.h", ["write o.h"]),
+        ("g(1, m.a)", ["pass m.a"]),
+        ("g(k=m)", ["pass m"]),
+        ("g(*m.a)", ["escape m.a"]),
+        ("g([m])", ["escape m"]),
+        ("g(m.a + 1)", []),
+        ("g(m[0].a)", ["pass m.[].a"]),
+        ("g(m.a[0])", ["pass m.a.[]"]),
+        ("g(m.a[1:])", ["pass m.a"]),
+        ("g(m.a if m.b else 0)", ["escape m.a"]),
+        ("len(m.a)", []),
+        ("x = float(m.a)", []),
+        ("[p for p in m.a]", ["escape p"]),
+        ("m.a.append(1)", ["pass m.a"]),
+        ("x = f'{m.a}'", []),
+        ("x = '%s' % m.a", []),
         ("return m.a", ["escape m.a"]),
         ("yield m", ["escape m"]),
-        ("raise E(m.a)", ["pass m.a E 0"]),
-        ("for p in m.a: p.x", ["read m.a", "read p.x"]),
-        ("x = [p.x for p in m.a]", ["read m.a", "escape p.x"]),
-        ("x = lambda: m.a", ["escape m f.lambda@2:7"]),
-        ("def g(): return m.a", ["escape m f.g"]),
+        ("raise E(m.a)", ["pass m.a"]),
+        ("for p in m.a: p.x", []),
+        ("x = [p.x for p in m.a]", ["escape p.x"]),
+        ("x = lambda: m.a", ["escape m"]),
+        ("def g(): return m.a", ["escape m"]),
         ("def g(m): return m.a", []),
         ("other.a", []),
         ("print(other)", []),
-        ("match m.k:\n  case 1: pass", ["read m.k"]),
-        ("if (n := m.a) > n: pass", ["read m.a n", "read n"]),
-        ("with m.a as x: pass", ["read m.a"]),
+        ("match m.k:\n  case 1: pass", []),
+        ("if (n := m.a) > n: pass", []),
+        ("with m.a as x: pass", []),
         ("a, b = m.x, m.y", ["escape m.x", "escape m.y"]),
-        ("global m2\nm2 = m.a", ["escape m.a m2"]),
+        ("global m2\nm2 = m.a", ["escape m.a"]),
     ],
 )  # fmt: skip
 def test_accesses(text, expected):
     body = function(facts("def f(m):\n" + textwrap.indent(text, "  ")), "f")
-    found = []
-    for access in body.accesses:
-        words = [access.kind, access.path, access.to]
-        if access.kind == "pass":
-            words += [str(access.position), access.keyword]
-        found.append(" ".join(word for word in words if word))
-    assert found == expected
+    assert [f"{access.kind} {access.path}" for access in body.accesses] == expected
 
 
 def test_a_captured_variable_is_told_at_every_function_between():
     found = facts("def f(m):\n  def g():\n    return lambda: m.a\n")
-    assert [(a.path, a.kind, a.to) for a in function(found, "f").accesses] == [("m", "escape", "f.g")]
-    inner = "f.g.lambda@3:12"
-    assert [(a.path, a.kind, a.to) for a in function(found, "f.g").accesses] == [("m", "escape", inner)]
-    assert [(a.path, a.kind, a.to) for a in function(found, inner).accesses] == [("m.a", "escape", "")]
+    for name, path in (("f", "m"), ("f.g", "m"), ("f.g.lambda@3:12", "m.a")):
+        assert [(a.path, a.kind) for a in function(found, name).accesses] == [(path, "escape")]
 
 
 @pytest.mark.parametrize(
@@ -650,7 +642,7 @@ def check(data):
     lines = data.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     for body in found.functions:
         assert 1 <= body.line <= body.end <= len(lines)
-        for each in (*body.calls, *body.assignments, *body.accesses):
+        for each in (*body.calls, *body.assignments):
             assert 1 <= each.line <= len(lines)
             assert -1 <= each.guard < len(body.guards)
         for call in body.calls:

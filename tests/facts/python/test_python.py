@@ -301,9 +301,9 @@ def test_syntax_newer_than_this_interpreter_is_a_problem():
     assert facts.imports[0].module == "a"
 
 
-def test_interpreter_and_main():
+def test_interpreter():
     facts = extract(b"#!/usr/bin/env python\nif __name__ == '__main__':\n    main()\n")
-    assert (facts.interpreter, facts.main) == ("#!/usr/bin/env python", True)
+    assert facts.interpreter == "#!/usr/bin/env python"
     assert extract(b"#!/bin/sh\n").interpreter == ""
 
 

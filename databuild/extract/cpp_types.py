@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ..surface import CppParameter
+from ...impact.facts.surface import CppParameter
 
 TOKEN = re.compile(
     r"[^\W\d]\w*|\.?\d(?:[eEpP][+-]|[\w.'])*"

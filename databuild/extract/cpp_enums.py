@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from .surface_declarations import without_deprecation
-from .surface_types import joined, split, tokens_of
+from .cpp_declarations import without_deprecation
+from .cpp_types import joined, split, tokens_of
 
 _NUMBER = re.compile(r"(?:0[xX][\da-fA-F]+|\d+)[uUlL]*\Z")
 

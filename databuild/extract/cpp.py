@@ -1,4 +1,4 @@
-"""A C or C++ header to what it offers (surface.py).
+"""A C or C++ header to what it offers (impact/facts/surface.py).
 
 Reading is by declarations: directives are blanked, the rest is cut at `;`, `{` and `}`, bodies of functions are skipped
 unread, and each declaration is read from its tokens. No grammar of whole files is involved, so that a macro nobody
@@ -12,13 +12,13 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..surface import Entity, HeaderSurface
-from .lexical import Scan, includes_of, scan, standing
-from .surface_declarations import ClassHead, Declarator, Head, class_head, declared, head_of, without_deprecation
-from .surface_directives import HIDDEN, warning_of, without_directives
-from .surface_enums import enumerators
-from .surface_macros import DECLARES, expansion
-from .surface_types import closed, joined, split, tokens_of, type_text
+from ...impact.facts.cpp.lexical import Scan, includes_of, scan, standing
+from ...impact.facts.surface import Entity, HeaderSurface
+from .cpp_declarations import ClassHead, Declarator, Head, class_head, declared, head_of, without_deprecation
+from .cpp_directives import HIDDEN, warning_of, without_directives
+from .cpp_enums import enumerators
+from .cpp_macros import DECLARES, expansion
+from .cpp_types import closed, joined, split, tokens_of, type_text
 
 
 class _Scope(NamedTuple):
@@ -59,6 +59,11 @@ _BODY_WORDS = frozenset(("const", "noexcept", "override", "final", "mutable", "t
 _LAST_WORD = re.compile(r"(\w+)\s*\Z")
 _MADE = frozenset(("constructor", "destructor"))
 _HEADER_MACROS = ("DEPRECATED_HEADER", "HEADER_DEPRECATED")
+
+
+Facts = HeaderSurface
+LIMITS = {"": "cpp"}
+"""What facts/kinds.py asks a module that makes facts for: their type, and which limit the size of files has."""
 
 
 def extract(data: bytes) -> HeaderSurface:

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.cpp.surface import extract
+from rosimpact.databuild.extract.cpp import extract
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode
 from rosimpact.impact.facts.kinds import extract as facts_of
 from rosimpact.impact.facts.surface import Entity, declared, plain
@@ -256,9 +256,9 @@ def test_what_reformatting_changes_is_no_change(one, other):
 
 
 def test_it_is_a_kind_of_facts():
-    facts = facts_of("surface_cpp", b"#include <a.h>\nint f();")
+    facts = facts_of("rosimpact.databuild.extract.cpp", b"#include <a.h>\nint f();")
     assert isinstance(facts, FileFacts)
-    assert decode("surface_cpp", encode(facts)) == facts
+    assert decode("rosimpact.databuild.extract.cpp", encode(facts)) == facts
     assert [include.path for include in facts.facts.includes] == ["a.h"]
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from ..condition import Condition
-from ..surface import CppParameter, Entity
-from .lexical import Directive, Scan, blanked, conditional_blocks
-from .surface_types import arguments_of, tokens_of
+from ...impact.facts.condition import Condition
+from ...impact.facts.cpp.lexical import Directive, Scan, blanked, conditional_blocks
+from ...impact.facts.surface import CppParameter, Entity
+from .cpp_types import arguments_of, tokens_of
 
 HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
 """Comments and literals."""

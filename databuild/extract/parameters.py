@@ -12,17 +12,19 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import msgspec
 
 from ...edges.documents import load_yaml
-from .cpp.lexical import scan
-from .place import Problem
-from .python.constants import Constants, module_constants
-from .python.source import read
-from .usage import argument_spans
+from ...impact.facts.cpp.lexical import scan
+from ...impact.facts.place import Problem
+from ...impact.facts.python.constants import Constants
+from ...impact.facts.python.source import read
+from ...impact.facts.usage import argument_spans
+from ...impact.targets.parameters import last_part
 
 
 class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -41,11 +43,19 @@ class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     mentioned: tuple[str, ...] = ()
 
 
-def extract(data: bytes, kind: str) -> ParametersFile:
-    """What a file declares. kind: `parameters_cpp`, `parameters_python`, `parameters_cfg` or `parameters_yaml`. Raises
-    nothing that kinds.extract() does not contain."""
+Facts = ParametersFile
+LIMITS = {"cpp": "cpp", "python": "python", "cfg": "script", "yaml": "parameters"}
+"""What facts/kinds.py asks a module that makes facts for: their type, and which limit the size of files has."""
+
+
+def kind_of(language: str) -> str:
+    """The kind of these facts of files in one of the languages of LIMITS."""
+    return f"{__name__}:{language}"
+
+
+def extract(data: bytes, language: str) -> ParametersFile:
+    """What a file declares. language: one of LIMITS. Raises nothing that kinds.extract() does not contain."""
     readers = {"cpp": _in_cpp, "python": _in_python, "cfg": _in_cfg, "yaml": _in_yaml}
-    language = kind.removeprefix("parameters_")
     mentioned = _mentioned(data) if language in ("cpp", "python") else ()
     problems: tuple[Problem, ...] = ()
     if language in ("python", "cfg"):
@@ -60,11 +70,6 @@ _TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")
 def _mentioned(data: bytes) -> tuple[str, ...]:
     """The last parts of all texts that could be, or end, the name of a parameter."""
     return tuple(sorted({last_part(text.decode("ascii").rstrip("./")) for text in _TEXT.findall(data)} - {""}))
-
-
-def last_part(name: str) -> str:
-    """The last part of a parameter's name, in either generation of ROS."""
-    return name.replace("/", ".").rpartition(".")[2].lstrip("~")
 
 
 def mentions(mentioned: Collection[str], name: str) -> bool:
@@ -161,6 +166,26 @@ def _in_python(data: bytes) -> Iterator[DeclaredParameter]:
             continue
         name = node.args[0] if node.args else given.get("name")
         yield from _python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"), constants)
+
+
+def module_constants(tree: ast.Module) -> Constants:
+    """The names that the module itself binds and nothing in it binds again, so that they mean the same everywhere."""
+    bound = Counter(
+        node.id if isinstance(node, ast.Name) else node.arg
+        for node in ast.walk(tree)
+        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load))
+    )
+    constants = Constants()
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+            target = statement.targets[0]
+        elif isinstance(statement, ast.AnnAssign):
+            target = statement.target
+        else:
+            continue
+        if isinstance(target, ast.Name) and bound[target.id] == 1 and statement.value is not None:
+            constants.assign(target, constants.value(statement.value))
+    return constants
 
 
 def _python_parameter(

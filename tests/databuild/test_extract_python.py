@@ -6,7 +6,8 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.python.surface import ModuleSurface, extract
+from rosimpact.databuild.extract.python import extract
+from rosimpact.impact.facts.python.surface import ModuleSurface
 
 
 def surface(text):

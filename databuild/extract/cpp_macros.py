@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from .surface_types import split, tokens_of
+from .cpp_types import split, tokens_of
 
 _SHARED = "using SharedPtr = std::shared_ptr<T>; using ConstSharedPtr = std::shared_ptr<const T>;"
 _MAKE_SHARED = "template<typename... Args> static std::shared_ptr<T> make_shared(Args&&... args);"

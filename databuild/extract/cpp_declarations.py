@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..surface import Base, CppParameter, TemplateParameter
-from .surface_types import (
+from ...impact.facts.surface import Base, CppParameter, TemplateParameter
+from .cpp_types import (
     ASIDE,
     ATTRIBUTE_WORDS,
     BUILTIN,
