@@ -112,7 +112,7 @@ class Workers:
         """Waits until at least one thing is done: (thing, result or Died) of all that are. What a task raises is raised
         here."""
         done = []
-        for key, _ in self._selector.select() if self.busy else ():
+        for key, _ in self._wait() if self.busy else ():
             worker: _Worker = key.data
             answer = _receive(worker.results)
             thing = worker.thing
@@ -128,6 +128,13 @@ class Workers:
                 raise result
             done.append((thing, result))
         return done
+
+    def _wait(self) -> list[tuple[selectors.SelectorKey, int]]:
+        """What the selector says once a process has an answer; until then, the steps of meanwhile() are taken."""
+        ready = self._selector.select(0)
+        while not ready and _take_step():
+            ready = self._selector.select(0)
+        return ready or self._selector.select()
 
     def _start(self) -> _Worker:
         with contextlib.ExitStack() as opened:
@@ -185,6 +192,34 @@ class _Worker:
         self.process, self.tasks, self.results, self.shared = process, tasks, results, shared
         self.busy, self.fresh = False, True
         self.thing: Any = None
+
+
+@contextlib.contextmanager
+def meanwhile(steps: Iterable[object]) -> Iterator[None]:
+    """Within it, this process takes the steps one at a time while it has to wait for others, as long as there are any.
+
+    steps: done in iterating over them. They only prepare what comes later: not all of them may be reached, and where
+    one fails, what needs it fails again. One should be done in some milliseconds, since no process gets anything to do
+    before its end.
+    """
+    _MEANWHILE.append(iter(steps))
+    try:
+        yield
+    finally:
+        _MEANWHILE.pop()
+
+
+def _take_step() -> bool:
+    """Takes a step of meanwhile(), of the innermost that has one; False when none has."""
+    for steps in reversed(_MEANWHILE):
+        with contextlib.suppress(Exception):
+            if next(steps, _END) is not _END:
+                return True
+    return False
+
+
+_MEANWHILE: list[Iterator[object]] = []
+_END = object()
 
 
 def begin_part(part: int, size: int) -> None:
@@ -270,6 +305,7 @@ def _serve(
     try:
         gc.freeze()
         _SHARED[:] = [shared]
+        _MEANWHILE.clear()
         # Ctrl-C goes to every process of the terminal; the parent alone decides what it means.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)

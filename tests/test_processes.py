@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -187,6 +188,69 @@ def test_no_process_and_no_descriptor_is_left():
 
 
 @needs_fork
+def _slowly(thing):
+    time.sleep(0.05)
+    return thing
+
+
+def _tell_steps_left(_):
+    return len(processes._MEANWHILE)
+
+
+@needs_fork
+def test_steps_are_taken_while_others_work(tmp_path):
+    gate = tmp_path / "gate"
+    taken = []
+
+    def steps():
+        for number in range(3):
+            taken.append(number)
+            yield
+        gate.touch()
+        yield
+
+    def wait_for_gate(_):
+        while not gate.exists():
+            time.sleep(0.001)
+        return "done"
+
+    with processes.meanwhile(steps()):
+        assert dict(processes.forked(wait_for_gate, [1, 2], 2)) == {1: "done", 2: "done"}
+    assert taken == [0, 1, 2] and not processes._MEANWHILE
+
+
+@needs_fork
+def test_steps_are_not_taken_by_the_others():
+    with processes.meanwhile(iter(range(5))):
+        assert dict(processes.forked(_tell_steps_left, [1], 1)) == {1: 0}
+
+
+@needs_fork
+def test_a_step_that_fails_ends_the_steps_and_nothing_else():
+    taken = []
+
+    def steps():
+        taken.append("failing")
+        raise ValueError("no step")
+        yield
+
+    with processes.meanwhile(iter([])), processes.meanwhile(steps()):
+        assert dict(processes.forked(_slowly, [1, 2], 1)) == {1: 1, 2: 2}
+    assert taken == ["failing"]
+
+
+@needs_fork
+def test_an_interrupt_in_a_step_leaves_no_process():
+    def steps():
+        raise KeyboardInterrupt
+        yield
+
+    born_before = children()
+    with pytest.raises(KeyboardInterrupt), processes.meanwhile(steps()):
+        list(processes.forked(_endless, [1, 2], 2))
+    assert children() == born_before and not processes._MEANWHILE
+
+
 def test_what_a_task_raises_is_raised_here():
     with pytest.raises(KeyError):
         dict(processes.forked(_raises, range(3), 2))

@@ -10,7 +10,8 @@ import pytest
 from rosimpact.impact.analysis import check_opened as check_opened
 from rosimpact.impact.analysis import report_cache
 from rosimpact.impact.analysis.check import run
-from rosimpact.impact.analysis.session import Options
+from rosimpact.impact.analysis.session import Options, select_rules
+from rosimpact.impact.config import Config
 from rosimpact.impact.facts.store import Store
 
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>
@@ -154,3 +155,11 @@ def test_what_cannot_be_read_counts_as_lost(workspace, tmp_path, monkeypatch, da
         store.remember("report", [(keys[0], data)])
     assert check(workspace, tmp_path / "cache") == first
     assert keys[0] == keys[1]
+
+
+@pytest.mark.parametrize("preview", [True, False])
+def test_facts_of_the_message_flow_are_made_where_a_rule_reads_them(tmp_path, preview):
+    options = Options(preview=preview)
+    wanted = any(rule.reads_flow for rule in select_rules(options, Config()).values())
+    with Store(tmp_path) as store:
+        assert report_cache.asks_flow(Config(), store, options) is wanted

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from ..rules.rule import Finding
+from ...edges import processes
+from ..rules.rule import Finding, import_rules
 from ..tree import Tree, WorkingTree
 from . import report_cache
 from .report import Checked, Report
-from .session import DEFAULTS, CheckError, Options, Progress, link_workspace, read_workspace
+from .session import DEFAULTS, CheckError, Options, Progress, Read, link_workspace, read_workspace
 
 
 def check(
@@ -43,17 +44,31 @@ def run(
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
     compared = bool(options.base) or base_tree is not None
-    with read_workspace(path, options, progress, report_cache.asks_flow, tree) as read:
+    with (
+        processes.meanwhile(import_rules()),
+        read_workspace(path, options, progress, report_cache.asks_flow, tree) as read,
+    ):
         key = None if compared else report_cache.report_key(read, options)
         if key is not None and (known := report_cache.load_report(path, read, key, started)) is not None:
             return known
         from .check_opened import check_opened
 
-        opened = link_workspace(read, path, options)
+        with processes.meanwhile(_load_changes(read)):
+            opened = link_workspace(read, path, options)
         checked = check_opened(path, options, opened, base_tree=base_tree, started=started)
         if key is not None and opened.workspace.whole and not checked.report.failure:
             report_cache.store_report(read, key, checked)
         return checked
+
+
+def _load_changes(read: Read) -> Iterator[None]:
+    """Has the targets know their changes, which most rules ask for, target by target."""
+    from .result_cache import load_changes
+
+    for chosen in read.targets:
+        load_changes(read.store, chosen.target)
+        read.store.close()  # no process that is forked now may go on with a connection of this one
+        yield
 
 
 def check_workspace(

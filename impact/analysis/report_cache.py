@@ -41,6 +41,8 @@ class _Kept(msgspec.Struct, frozen=True, array_like=True):
 def asks_flow(config: Config, store: Store, options: Options) -> bool:
     """Whether some of the rules to run read the message flow; remembered, since telling takes all rules. Raises as
     select_rules() does."""
+    if not (options.select or options.ignore or config.select or config.ignore):
+        return options.preview  # all rules on the message flow are previews
     asked = (code_stamp(), options.select, options.ignore, options.preview, config.select, config.ignore)
     key = hashlib.sha1(repr(asked).encode("utf-8", "surrogateescape")).digest()
     known = store.memo("asks flow", key)

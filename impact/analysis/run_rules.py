@@ -9,6 +9,7 @@ from typing import Any
 
 from ...edges import processes
 from ...edges.console import unforeseen
+from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
@@ -50,9 +51,23 @@ def run_rules(
     every = list(rules)
     flow_rules = [rule for rule in every if rule.reads_flow]
     target_rules = [rule for rule in every if rule.scope == "target"]
-    by_target, on_flow = _run_remembered(
-        opened, target_rules, flow_rules, crashed, before, jobs or processes.cores()
-    )
+    ran: dict[str, tuple[list[tuple[TargetView, Diagnostic]], Crashes]] = {}
+
+    def run_on_all_targets() -> Iterator[None]:
+        for rule in every:
+            if rule.scope == "targets" and rule.name not in ran:
+                failed: Crashes = {}
+                yielded = list(_run_safely(rule, "", failed, lambda rule=rule: rule.run(opened.views)))
+                ran[rule.name] = yielded, failed
+                opened.store.close()  # no process that is forked now may go on with a connection of this one
+                yield
+
+    with processes.meanwhile(run_on_all_targets()):
+        by_target, on_flow = _run_remembered(
+            opened, target_rules, flow_rules, crashed, before, jobs or processes.cores()
+        )
+    for _ in run_on_all_targets():
+        pass  # those for which no process had to be waited for
     for rule in every:
         if rule.scope == "target":
             for view in opened.views:
@@ -61,7 +76,8 @@ def run_rules(
         elif rule.scope == "install_space":
             yield from _run_on_install(opened, rule, crashed)
         elif rule.scope == "targets":
-            yielded = _run_safely(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
+            yielded, failed = ran[rule.name]
+            crashed.update(failed)
             yield from ((rule.name, view.target.name, each) for view, each in yielded)
         elif rule.reads_flow:
             yield from ((name, "", each) for name, each in on_flow if name == rule.name)

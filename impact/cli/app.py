@@ -440,7 +440,7 @@ def main() -> None:
             say(f"rosimpact: {argument!r}: contains a null byte, which no path or name can contain; remove it")
             raise SystemExit(2)
     # What a command reads it keeps, and there are no cycles in it: looking for some often costs a tenth of the time.
-    gc.set_threshold(200_000, 20, 100)
+    gc.set_threshold(1_000_000, 20, 100)
     try:
         raise SystemExit(_select_command("".join(sys.argv[1:2]))(standalone_mode=False))
     except _UsageError as error:

@@ -1,5 +1,6 @@
 """Where the program starts: as little as possible before interrupts and failures of the start itself are answered."""
 
+import gc
 import os
 import sys
 
@@ -37,6 +38,7 @@ def main() -> None:
         # What other processes and threads still do is of no use by now, and where files or processes ran out they may
         # never end.
         interrupts.exit_now()
+    gc.freeze()  # an interpreter that ends collects several times, and all of it ends anyway
     raise SystemExit(status)
 
 

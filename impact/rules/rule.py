@@ -232,7 +232,8 @@ def _lowest(most: str, doubts: tuple[Doubt, ...]) -> str:
 
 def all_rules() -> dict[str, Rule]:
     """Every rule by name, importing the families on first use."""
-    _import_families()
+    for _ in import_rules():
+        pass
     return dict(sorted(_RULES.items()))
 
 
@@ -249,11 +250,20 @@ def groups(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
     return dict(sorted(found.items()))
 
 
+def import_rules() -> Iterator[None]:
+    """Imports the modules of all families, one in each step."""
+    for name in _modules():
+        importlib.import_module(name)
+        yield
+
+
 @cache
-def _import_families() -> None:
+def _modules() -> list[str]:
     package = importlib.import_module(__name__.rpartition(".")[0])
+    found = []
     for family in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
         if family.ispkg:
             folder = importlib.import_module(family.name)
-            for module in pkgutil.iter_modules(folder.__path__, folder.__name__ + "."):
-                importlib.import_module(module.name)
+            modules = pkgutil.iter_modules(folder.__path__, folder.__name__ + ".")
+            found += [family.name, *(module.name for module in modules)]
+    return found

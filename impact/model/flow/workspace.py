@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from ....edges import processes
 from ....edges.memory import kept_with
 from ...facts.extract import ExtractedFacts, gather
 from ...facts.flow import FlowFile
@@ -65,7 +66,15 @@ class WorkspaceFlow:
         """What its launch files start, see launches()."""
         from .launches import launches
 
-        return launches(self._workspace, lambda: self.code, self.jobs)
+        with processes.meanwhile(self._prepare_graph()):
+            return launches(self._workspace, lambda: self.code, self.jobs)
+
+    def _prepare_graph(self) -> Iterator[None]:
+        """The graph, which most that ask for launches ask for too, made while other processes follow them."""
+        if "code" in self.__dict__:
+            _ = self.graph
+            self._store.close()  # no process that is forked now may go on with a connection of this one
+            yield
 
 
 @kept_with
