@@ -51,6 +51,7 @@ from .python.undefined import (
 if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
+    from ..targets.surface.store import Surfaces
     from .api import Changes
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
@@ -345,7 +346,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
     fields: Fields | None = None
-    surfaces: Any = None
+    surfaces: Surfaces | None = None
     parameters: list[tuple[str, Pattern]] = []
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 

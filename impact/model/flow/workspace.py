@@ -13,7 +13,8 @@ from ....edges.memory import kept_with
 from ...facts.extract import ExtractedFacts, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
-from ...facts.store import remembered
+from ...facts.store import Store, remembered
+from ...tree.paths import Tree
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
 from .callers import Callers, callers
@@ -83,7 +84,7 @@ def flow_of(workspace: Workspace) -> WorkspaceFlow:
     return WorkspaceFlow(workspace)
 
 
-def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
+def linked(tree: Tree, store: Store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
     """A workspace as far as message flow needs it: its packages, their builds, and the flow facts of its code.
 
     Rules on dependencies cannot be asked of it: the facts that they need are not read. progress: as gather() has it.
@@ -203,7 +204,7 @@ def joined(workspace: Workspace) -> Join:
 
 
 def graph_of(
-    workspace: Workspace, store, root: str = "", rev: str = "", launch: str = "",
+    workspace: Workspace, store: Store | None, root: str = "", rev: str = "", launch: str = "",
     arguments: Mapping[str, str] | None = None,
 ) -> Graph:  # fmt: skip
     """The message-flow graph of a workspace. store: remembers it by the content it was joined from.

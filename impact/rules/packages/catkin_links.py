@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from ....edges.memory import cached_method
 from ....edges.reach import walk
 from ...model.cmake.links import linked_items
-from ..vocabulary import TargetView
+from ..vocabulary import Package, TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
@@ -74,7 +74,7 @@ class CatkinExports:
 _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 
 
-def list_linked(package, target: str) -> set[str] | None:
+def list_linked(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
     items = linked_items(package, target)
     if items is None or any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
@@ -85,7 +85,7 @@ def list_linked(package, target: str) -> set[str] | None:
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
-def linked_packages(view: TargetView, package, items: Iterable[str]) -> set[str]:
+def linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
     names = {stem_of(item).partition("::")[0] for item in items}
     if "catkin" in names:

@@ -41,7 +41,7 @@ def cmake_name_case(view: TargetView, package: Package):
     yield from _list_lost_spellings(view, package)
 
 
-def _list_unknown_spellings(view: TargetView, package):
+def _list_unknown_spellings(view: TargetView, package: Package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
     own = view.workspace.cmake_files
     for f in package.build.found:
@@ -61,7 +61,7 @@ def _list_unknown_spellings(view: TargetView, package):
         yield Diagnostic(f.at, f.name, package.name, {"replacement": meant[0]}, "case", doubts, fix=fix)
 
 
-def _list_lost_spellings(view: TargetView, package):
+def _list_lost_spellings(view: TargetView, package: Package):
     """find_package names to which the target's version of a library answers no longer, where the build needs them."""
     linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
     for f in package.build.found:

@@ -69,14 +69,14 @@ def library_without_headers(view: TargetView, package: Package):
         yield Diagnostic(view.manifest_place(package, name), right, package.name, data, "bare", doubts)
 
 
-def _lacks(view: TargetView, package, need) -> bool:
+def _lacks(view: TargetView, package: Package, need) -> bool:
     """True when compiled code is sure not to find the headers: nothing that is declared brings them in turn."""
     if need.how == "include" and not need.targets:
         return False
     return need.required and not view.unknown_contents.may_hold(package, need.subject, need.providers)
 
 
-def _list_handed_on(view: TargetView, package, declared, bare, need, seen):
+def _list_handed_on(view: TargetView, package: Package, declared, bare, need, seen):
     """A library whose headers are declared for building, and without headers for whoever includes the public header."""
     right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
     if right is None or right in seen:

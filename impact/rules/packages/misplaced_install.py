@@ -77,7 +77,7 @@ def misplaced_install(view: TargetView, package: Package):
         yield from find(view, package, installs)
 
 
-def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_doubled(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Folders called include that are installed into one of that name, so that headers end up in include/include."""
     for install in installs:
         if install.kind != "directory" or install.destination.rstrip("/").rpartition("/")[2] != "include":
@@ -88,7 +88,7 @@ def _list_doubled(view: TargetView, package, installs) -> Iterator[Diagnostic]:
                 yield Diagnostic(install.at, "include", package.name, kind="doubled", doubts=doubts)
 
 
-def _is_lost(view: TargetView, package, install, folder: str) -> bool:
+def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     """True when another package of the workspace compiles a header of the folder, or the package exports the place
     where its headers should lie, and no other rule installs them there."""
     if not view.certain(install.conditions) or package.build.unresolved:
@@ -112,7 +112,7 @@ def _is_lost(view: TargetView, package, install, folder: str) -> bool:
     )
 
 
-def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
     scripts = {*package.digest.scripts, *package.digest.shells}
@@ -142,7 +142,7 @@ def _list_not_executable(view: TargetView, package, installs) -> Iterator[Diagno
             yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
 
 
-def _is_node(view: TargetView, package, script: str) -> bool:
+def _is_node(view: TargetView, package: Package, script: str) -> bool:
     """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
     return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
 
@@ -154,7 +154,7 @@ _OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
 _RUN_BY = (".launch.py", "setup.py", "conftest.py")
 
 
-def _list_renamed(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_renamed(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
     for install in installs:
         if install.kind != "directory":
@@ -175,7 +175,7 @@ def _list_renamed(view: TargetView, package, installs) -> Iterator[Diagnostic]:
             yield Diagnostic(install.at, subject, package.name, data, "renamed", doubts)
 
 
-def _list_components(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_components(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
     components = {e.context for e in package.build.exports if e.how == "component" and view.active(e.conditions)}
     by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
@@ -194,7 +194,7 @@ def _find_wrong_place(installs, target: str, folder: str) -> Install | None:
     return rules[0] if rules and known else None
 
 
-def _list_programs(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_programs(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Nodes of ROS 2, and programs that a launch file starts, that no rule installs where those who start them look."""
     started = list_references(view, package, "executable")
     for target in package.build.targets:
@@ -211,7 +211,7 @@ def _list_programs(view: TargetView, package, installs) -> Iterator[Diagnostic]:
         yield Diagnostic(place.at, target.name, package.name, data, "program", (Doubt.LATE,))
 
 
-def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_other_python(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Install folders of a Python version that the target does not have."""
     own = f"{view.target.python_major}.{view.target.python}"
     for install in installs:
@@ -225,7 +225,7 @@ def _list_other_python(view: TargetView, package, installs) -> Iterator[Diagnost
 _WITHOUT_PLAIN = 8
 
 
-def _list_plain(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies."""
     target = view.target
     if target.python_major < 3 or target.python < _WITHOUT_PLAIN:

@@ -55,7 +55,7 @@ def missing_cmake_modules(view: TargetView, package: Package):
         yield Diagnostic(found.at, "cmake_modules", package.name, {"name": found.name}, doubts=doubts)
 
 
-def _lacks_eigen(view: TargetView, package) -> bool:
+def _lacks_eigen(view: TargetView, package: Package) -> bool:
     """True when code that is built here includes Eigen, whose headers lie in a folder of their own, and nothing that is
     found brings it."""
     found = {f.name for f in package.build.found} - {"Eigen"}

@@ -140,7 +140,7 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
         yield Diagnostic(need.at, name, package.name, data, "include", doubts, together=_ONCE)
 
 
-def _list_of_messages(view: TargetView, package):
+def _list_of_messages(view: TargetView, package: Package):
     """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}

@@ -148,7 +148,7 @@ def _doubt_of_include(view: TargetView, need) -> Doubt | None:
 _PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
 
 
-def _only_placed(view: TargetView, package):
+def _only_placed(view: TargetView, package: Package):
     """Libraries whose vendor package is found and no longer finds them."""
     found = {f.name: f for f in package.build.found}
     for vendor, since, library, root in _PLACING:

@@ -89,7 +89,7 @@ def missing_install(view: TargetView, package: Package):
             yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts, together=together)
 
 
-def _is_to_be_installed(view: TargetView, package, installs) -> bool:
+def _is_to_be_installed(view: TargetView, package: Package, installs) -> bool:
     """Whether the programs of a package are of use only where they are installed: ros2 run finds no others, and a
     Debian package holds no others."""
     if package.build.unresolved or any("$" in item for install in installs for item in install.items):
@@ -97,7 +97,7 @@ def _is_to_be_installed(view: TargetView, package, installs) -> bool:
     return view.target.ros == 2 or view.target.ever_released(package.name)
 
 
-def _is_started(view: TargetView, package, name: str) -> bool:
+def _is_started(view: TargetView, package: Package, name: str) -> bool:
     """True when an installed launch file starts a program of the package in any case."""
     for other in view.everyone():
         installs = [i for i in other.build.installs if view.certain(i.conditions)]
@@ -110,7 +110,7 @@ def _is_started(view: TargetView, package, name: str) -> bool:
     return False
 
 
-def _is_aside(package, target) -> bool:
+def _is_aside(package: Package, target) -> bool:
     inside = lambda p: p[len(package.path) :].lstrip("/")  # noqa: E731
     if role_of_folder(inside(target.at.path)) or re.search(
         r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name

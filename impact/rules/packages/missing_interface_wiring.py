@@ -79,7 +79,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
         yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix)
 
 
-def _find_orders(package) -> dict[str, set[str]]:
+def _find_orders(package: Package) -> dict[str, set[str]]:
     """For every target: everything it waits for, through targets of the package."""
     direct: dict[str, set[str]] = {}
     for target in package.build.targets:
@@ -98,12 +98,12 @@ def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:
     return interface_of(view, header) is not None
 
 
-def _component(package, name: str) -> bool:
+def _component(package: Package, name: str) -> bool:
     """True when catkin looks for a package, so that catkin_EXPORTED_TARGETS holds what it generates."""
     return any(f.how == "catkin" and f.name == name for f in package.build.found)
 
 
-def _add_dependencies(package, targets, variable: str) -> tuple[Insert, ...]:
+def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert, ...]:
     """An add_dependencies behind each target's own command; nothing where one command, in a loop, makes several."""
     made = {}
     for target in package.build.targets:

@@ -96,7 +96,7 @@ def _is_misspelt(stem: str, name: str) -> bool:
     )
 
 
-def _diagnose_variable(package, use, found: str, variable: str, kind: str) -> Diagnostic:
+def _diagnose_variable(package: Package, use, found: str, variable: str, kind: str) -> Diagnostic:
     """That a variable is empty, where another one that a find_package() sets was meant."""
     new = f"${{{variable}}}"
     fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", new),)

@@ -85,7 +85,7 @@ def nonexistent_export(view: TargetView, package: Package):
         yield from _list_unknown_packages(view, package, ament.dependencies)
 
 
-def _list_directories(view: TargetView, package):
+def _list_directories(view: TargetView, package: Package):
     made = {posixpath.normpath(i.destination) for i in package.build.installs}
     for export in package.build.exports:
         if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
@@ -130,7 +130,7 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
         yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
 
 
-def _list_of_catkin(view: TargetView, package):
+def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     for export in package.build.exports:
@@ -161,14 +161,14 @@ def _list_of_catkin(view: TargetView, package):
             yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
 
 
-def _is_own(view: TargetView, package, library: str) -> bool:
+def _is_own(view: TargetView, package: Package, library: str) -> bool:
     """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
     if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
         return False
     return all(link.item != library for target in package.build.targets for link in target.links)
 
 
-def _sets(package, stem: str) -> bool:
+def _sets(package: Package, stem: str) -> bool:
     """True when a find_package of the package sets variables that begin with the stem."""
     for found in package.build.found:
         names = variables(found.name)

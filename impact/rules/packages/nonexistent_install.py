@@ -61,7 +61,7 @@ def nonexistent_install(view: TargetView, package: Package):
         yield from _list_unset(view, package)
 
 
-def _list_absent(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_absent(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     for install in installs:
         if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
             continue
@@ -100,7 +100,7 @@ def _list_absent_targets(view: TargetView, package: Package, installs) -> Iterat
             yield Diagnostic(install.at, item, package.name, kind="target")
 
 
-def _may_be_empty(package, path: str) -> bool:
+def _may_be_empty(package: Package, path: str) -> bool:
     """Whether a folder may be one for headers or built files that git cannot keep while it is empty, and not
     one of `include` beside others that are there."""
     above = f"{posixpath.dirname(path)}/"
@@ -109,7 +109,7 @@ def _may_be_empty(package, path: str) -> bool:
     return re.search(r"(^|/)(include|lib|bin)(/|$)", path) is not None
 
 
-def _stops_symlinks(package, install, item: str) -> bool:
+def _stops_symlinks(package: Package, install, item: str) -> bool:
     """Whether ament's own install(DIRECTORY), which links files instead of copying them, takes an item for the name of
     a folder that does not exist. Source: ament_cmake_symlink_install_directory.cmake of ament_cmake_core."""
     if package.build.ament_package is None or install.kind != "directory" or "$<" not in item:
@@ -135,7 +135,7 @@ def _calls_unknown(package: Package) -> bool:
     return any(use.kind == "command" and not use.context for use in package.build.uses)
 
 
-def _list_unset(view: TargetView, package) -> Iterator[Diagnostic]:
+def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
     if any(view.offers.package(name) is None for name in others if view.is_package(name)):

@@ -16,7 +16,7 @@ Use instead
 """
 
 from ...model.package import build_type_of
-from ..vocabulary import At, Diagnostic, TargetView, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(
@@ -38,7 +38,7 @@ def other_generation(view: TargetView):
     yield Diagnostic(At(first.digest.manifest_path, first.manifest.line), first.name, first.name, data)
 
 
-def _other(view: TargetView, package) -> bool:
+def _other(view: TargetView, package: Package) -> bool:
     """True for packages that say they build with the other generation's tools; plain CMake and Python build in both."""
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)

@@ -73,7 +73,7 @@ def find_test_commands(view: TargetView) -> dict[str, str]:
     }
 
 
-def _doubts(view: TargetView, package, name: str, conditions) -> tuple[Doubt, ...]:
+def _doubts(view: TargetView, package: Package, name: str, conditions) -> tuple[Doubt, ...]:
     if view.unknown_contents.may_come_along(package, name, (Provider("ros", name),)):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)

@@ -76,7 +76,7 @@ _FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
-def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:
+def _list_nothing(package: Package, opened: bool) -> Iterator[Diagnostic]:
     """A package that only holds data, and installs none of it. opened: a launch file or a script opens files of it."""
     folders = tuple(folder for folder in _DATA if package.has_files(folder))
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
@@ -85,7 +85,7 @@ def _list_nothing(package, opened: bool) -> Iterator[Diagnostic]:
         yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing", doubts)
 
 
-def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
+def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagnostic]:
     """Launch files and data that something of the workspace opens, and launch files of ROS 2, that no rule puts into
     the share folder at the path by which they are opened."""
     missing: dict[str, tuple[str, str]] = {}
@@ -120,7 +120,7 @@ def _list_opened(package, installs, opened: set[str]) -> Iterator[Diagnostic]:
         yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_FOLDERS)
 
 
-def _list_below(package, folder: str) -> list[str]:
+def _list_below(package: Package, folder: str) -> list[str]:
     """The files of a folder of the package."""
     return [path for path in package.digest.files if path.startswith(f"{folder}/")] if folder in package.folders else []
 
@@ -136,7 +136,7 @@ def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
 _LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
 
 
-def _list_launch_folders(package, installs) -> Iterator[tuple[str, str]]:
+def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]]:
     """The folder of launch files where no rule installs any file of it, with a launch file in it that starts or opens
     something: in ROS 1, which finds them in the source space too, an installed program of the package, or anything
     where other folders of it are installed."""
@@ -162,7 +162,7 @@ _OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
 _OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
 
 
-def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
+def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
     """Scripts that no rule installs: those that a launch file starts, that lie beside programs which are installed, or
     that are nodes: of ROS 2, which starts none from the source space, or of a package without other programs."""
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
@@ -180,7 +180,7 @@ def _list_scripts(package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
             yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)
 
 
-def _list_nodes(package, installs) -> frozenset[str]:
+def _list_nodes(package: Package, installs) -> frozenset[str]:
     """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
     source space starts them as well, those of a package that makes and installs no program at all.
     catkin_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.

@@ -50,7 +50,7 @@ def uninstalled_plugin_description(view: TargetView, package: Package):
         yield from _list_not_exported(view, package, installs)
 
 
-def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_descriptions(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Plugin descriptions that the manifest exports (catkin)."""
     for export in package.manifest.exports:
         value = export.attributes.get("plugin", "")
@@ -68,7 +68,7 @@ def _list_descriptions(view: TargetView, package, installs) -> Iterator[Diagnost
             yield Diagnostic(at, posixpath.basename(path), package.name, {"file": file}, "description", doubts)
 
 
-def _is_shipped(view: TargetView, package, installs, description: str) -> bool:
+def _is_shipped(view: TargetView, package: Package, installs, description: str) -> bool:
     """True when a library that the description names is installed, so that the plugins are there for others."""
     if package.build.unresolved:
         return False
@@ -79,7 +79,7 @@ def _is_shipped(view: TargetView, package, installs, description: str) -> bool:
     )
 
 
-def _list_not_exported(view: TargetView, package, installs) -> Iterator[Diagnostic]:
+def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Descriptions of plugins in libraries of the package that nothing exports and nothing installs."""
     libraries = {t.output_name or t.name: t for t in package.build.targets if t.kind in ("library", "module")}
     exports = {value.rpartition("/")[2] for e in package.manifest.exports for value in e.attributes.values()}

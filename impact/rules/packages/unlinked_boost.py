@@ -64,7 +64,7 @@ def unlinked_boost(view: TargetView, package: Package):
     yield from _list_unlinked(view, package, asked or frozenset())
 
 
-def _list_not_asked_for(view: TargetView, package, asked: Set[str]) -> Iterator[Diagnostic]:
+def _list_not_asked_for(view: TargetView, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
     """Imported targets of Boost whose component find_package() is not given."""
     seen = set(asked)
     for target in package.build.targets:

@@ -53,7 +53,7 @@ def unlinked_package(view: TargetView, package: Package):
 _CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
 
 
-def _list_without_client(view: TargetView, package):
+def _list_without_client(view: TargetView, package: Package):
     """Programs, and shared libraries for others, that include a client library and are given nothing to link."""
     build = package.build
     if build.unresolved or build.links:
@@ -84,7 +84,7 @@ def _list_without_client(view: TargetView, package):
             yield Diagnostic(target.at, client, package.name, data, "client library", doubts)
 
 
-def _list_unlinked(view: TargetView, package) -> Iterator[Diagnostic]:
+def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Programs whose own sources the linker most likely misses a library for: they include its headers, and what they
     use of those is not looked at. What libraries of the package miss may come with any library that one of theirs needs
     in turn, which the linker finds by itself."""

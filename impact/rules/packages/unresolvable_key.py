@@ -181,7 +181,7 @@ def _plain_repository(view: TargetView, package: str) -> str:
     return re.sub(r"[-_]*(?:ros)?\d?\Z", "", repository[0]).replace("-", "_") if repository is not None else ""
 
 
-def _fix(view: TargetView, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
+def _fix(view: TargetView, package: Package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     """Writes the name that was surely meant, or takes the wrong one out where that is declared beside it."""
     # A digit tells versions apart.
     if _plain(name) != _plain(guess) and not (len(name) > 5 and is_slip(name, guess)):

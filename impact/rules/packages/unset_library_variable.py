@@ -61,7 +61,7 @@ def unset_library_variable(view: TargetView, package: Package):
         yield from _list_prefixes(package)
 
 
-def _list_unset(view: TargetView, package):
+def _list_unset(view: TargetView, package: Package):
     """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
     build = package.build
     if build.unresolved or any("$" in f.name for f in build.found):
@@ -100,7 +100,7 @@ def _list_unset(view: TargetView, package):
         yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 
 
-def _doubts(view: TargetView, package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
+def _doubts(view: TargetView, package: Package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
     """What speaks against a linker that misses the library of an empty variable."""
     providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
     owners = {p.package or p.name for p in providers}
@@ -109,13 +109,13 @@ def _doubts(view: TargetView, package, variable: str, module: str, stem: str) ->
     return (Doubt.LUCKY,) if _brings(view, package, providers[0].package) else ()
 
 
-def _brings(view: TargetView, package, library: str) -> bool:
+def _brings(view: TargetView, package: Package, library: str) -> bool:
     """True where the package of another library that is found depends on this one's, so that it may pass it on."""
     found = {p.package for f in package.build.found for p in view.cmake(f.name)[:1] if p.kind == "system"}
     return any(library in view.apt.brought_by(name) for name in found - {library, ""})
 
 
-def _sets_others(view: TargetView, package) -> bool:
+def _sets_others(view: TargetView, package: Package) -> bool:
     """True where a library that is found may set variables of others: its configuration may look for what it needs,
     which CMake's own find modules leave to the caller."""
     return any(
@@ -127,7 +127,7 @@ def _sets_others(view: TargetView, package) -> bool:
     )
 
 
-def _compiled_with(view: TargetView, package, variable: str, stem: str, owners: set[str]) -> bool:
+def _compiled_with(view: TargetView, package: Package, variable: str, stem: str, owners: set[str]) -> bool:
     """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
     headers."""
     for target in package.build.targets:
@@ -142,7 +142,7 @@ def _compiled_with(view: TargetView, package, variable: str, stem: str, owners: 
     return False
 
 
-def _list_prefixes(package):
+def _list_prefixes(package: Package):
     """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
     for found in package.build.found:
         if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):

@@ -28,7 +28,7 @@ from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhe
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
-from ..vocabulary import Diagnostic, Doubt, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
 _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"
@@ -55,7 +55,7 @@ def language_standard(view: TargetView):
             yield from _ros2(view, package, default)
 
 
-def _ros1(view: TargetView, package, default: int | None):
+def _ros1(view: TargetView, package: Package, default: int | None):
     """What the package sets, else the compiler's default, against what is included."""
     fixed = view.standard(package)
     year = standard_year(fixed[0]) if fixed else default
@@ -89,7 +89,7 @@ def _ros1(view: TargetView, package, default: int | None):
             yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", doubts)
 
 
-def _ros2(view: TargetView, package, default: int | None):
+def _ros2(view: TargetView, package: Package, default: int | None):
     """A -std= flag stands where the compiler's default is all that linked targets ask for."""
     fixed = view.standard(package)
     if not fixed or not package.build.standard_by_flag or default is None:
