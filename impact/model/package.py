@@ -51,7 +51,6 @@ from .python.undefined import (
 if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
-    from ..targets.surface.store import Surfaces
     from .api import Changes
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
@@ -346,7 +345,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
     fields: Fields | None = None
-    surfaces: Surfaces | None = None
+    surfaces: Any = None
     parameters: list[tuple[str, Pattern]] = []
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
